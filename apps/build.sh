@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds targets of a configured preset and shows how far it is: apps/build.sh PRESET [TARGET ...]
-# Without a terminal it prints a line for each tenth of the build; what the compiler says comes whole.
+# Builds targets of a configured preset and shows the progress: apps/build.sh PRESET [TARGET ...]
+# Without a terminal it prints a line for each tenth of the build. The compiler's output is shown in full.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=$1 && shift

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Shows what Motorcade does: builds it, renders a drive in which two cars overtake the camera car, follows it at camera rate, measures
-# the outcome against the exact truth, and draws what it saw.
+# the outcome against the exact truth, and draws the result.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 results=results/demo

@@ -23,10 +23,10 @@ constexpr int kExitInternal = 70;
   ::_exit(kExitInternal);
 }
 
-/// Operator new found no memory. Each thread may be in the middle of anything: nothing is unwound.
+/// Ends the program when operator new finds no memory. Any thread may be in the middle of its work: nothing is unwound.
 [[noreturn]] void endWithoutMemory() { endWith("motorcade: out of memory\n"); }
 
-/// What is thrown where nothing may be: oneTBB's, when a thread cannot be started.
+/// Ends on an exception that nothing may throw here: oneTBB's, when a thread cannot be started.
 [[noreturn]] void endWithCurrentException() {
   try {
     if (const auto current = std::current_exception()) std::rethrow_exception(current);
@@ -42,7 +42,7 @@ constexpr int kExitInternal = 70;
   endWith("motorcade: internal error\n");
 }
 
-/// Runs the command and turns what went wrong into a message and an exit code.
+/// Runs the command and turns an exception into a message and an exit code.
 int perform(const std::function<int()>& action) {
   try {
     return action();

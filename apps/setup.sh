@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs from Debian's packages what Motorcade needs and is missing, and the packages named as arguments. Needs root or sudo only
-# when something is missing.
+# Installs the missing ones of Motorcade's dependencies from Debian's packages, and the packages named as arguments. Needs root or sudo
+# only when something is missing.
 set -euo pipefail
 
 packages=(

@@ -23,7 +23,7 @@ std::string environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// Of what this machine can tell nothing counts as alive.
+/// True unless the process is known to have ended. This machine cannot tell for those of others, which count as alive.
 bool isAlive(const std::string& who) {
   const std::string ours = hostName() + "-";
   if (!who.starts_with(ours)) return true;

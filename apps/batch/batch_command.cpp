@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr int kExitFailedTasks = 6;
 
-/// What is left of a plan, and what is not.
+/// The tasks of a plan that are still to be performed, and the number of those that are not.
 struct Remaining {
   std::vector<const Task*> tasks{};
   std::size_t finished = 0, failed = 0;  // before
@@ -66,7 +66,7 @@ std::set<fs::path> renderedInto(const Plan& plan) {
   return folders;
 }
 
-/// What was left by processes that are no longer there, here and in Slurm.
+/// Removes what processes left that no longer run, here or in Slurm.
 void removeLost(const Plan& plan, const BatchFolder& folder) {
   removeDeadAttempts(folder.attempts());
   for (const fs::path& sequences : renderedInto(plan)) removeDeadAttempts(sequences);
@@ -97,7 +97,7 @@ void tellFailures(const std::vector<TaskRecord>& failed) {
   if (failed.size() > kMost) std::cout << "and " << failed.size() - kMost << " more\n";
 }
 
-/// The drives that are not on the disk, each with its name, and where the first was looked for.
+/// Reports the drives that are not on the disk, each with its name, and where the first was looked for.
 void tellLeftOut(const Plan& plan) {
   if (plan.left_out.empty()) return;
   std::string names;
@@ -155,7 +155,7 @@ const Task& taskNamed(const Plan& plan, const std::string& name, const fs::path&
   return *task;
 }
 
-/// Performs one task; it is told to end when a signal comes.
+/// Performs one task, which ends early when a signal comes.
 int perform(const Task& task, Workplace workplace, bool only_render) {
   std::atomic<bool> stop = false;
   workplace.stop = &stop;

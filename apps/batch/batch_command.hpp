@@ -38,10 +38,10 @@ int runBatchTask(const BatchTaskOptions& options);
 struct BatchStatusOptions {
   std::filesystem::path batch{}, json{};
 };
-/// Tells how far a batch is, wherever it runs.
+/// Reports the progress of a batch, wherever it runs.
 int runBatchStatus(const BatchStatusOptions& options);
 
-/// Ends what runs of a batch, on this machine and in Slurm; finished results stay.
+/// Ends the running processes of a batch, on this machine and in Slurm; finished results stay.
 int runBatchCancel(const std::filesystem::path& batch);
 
 }  // namespace motorcade

@@ -20,7 +20,7 @@
 namespace motorcade {
 namespace {
 
-/// One task's state and what there is to say of it.
+/// One task's state and a remark on it.
 struct TaskState {
   std::string task{};
   std::string state{};  // done, failed, running, queued or waiting

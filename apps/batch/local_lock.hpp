@@ -21,13 +21,13 @@ class LocalLock {
   FolderLock lock_;
 };
 
-/// Who performs the tasks of a batch without Slurm.
+/// The process that performs the tasks of a batch without Slurm.
 struct LocalRunnerNote {
   std::string host{};
   int pid = 0;
   bool here = false;  // on this machine
 };
-/// Empty where nobody does.
+/// Empty when there is no such process.
 std::optional<LocalRunnerNote> localRunnerOf(const BatchFolder& folder);
 
 }  // namespace motorcade

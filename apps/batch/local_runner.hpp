@@ -12,13 +12,13 @@
 
 namespace motorcade {
 
-/// What became of the tasks that were to be performed.
+/// Outcome of the tasks that were to be performed.
 struct LocalOutcome {
   std::size_t done = 0;
   std::vector<TaskRecord> failed{};
 };
 
-/// Performs tasks on this machine, so many at a time, each in child processes.
+/// Performs tasks on this machine, each in child processes, one per slot at a time.
 class LocalRunner {
  public:
   struct Options {
@@ -27,9 +27,9 @@ class LocalRunner {
   };
   LocalRunner(const Plan& plan, const BatchFolder& folder, Options options);
 
-  /// Comes back when all are performed or `stop` was called.
+  /// Returns when all are performed or `stop` was called.
   LocalOutcome perform(const std::vector<const Task*>& tasks);
-  /// Ends what runs, in order, and starts nothing else; from any thread.
+  /// Ends the running processes in order and starts no others; callable from any thread.
   void stop();
 
  private:

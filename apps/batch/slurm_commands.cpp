@@ -26,7 +26,7 @@ struct Answer {
   std::string text{};  // of both outputs
 };
 
-/// A file that is gone when this is.
+/// A file that is removed with this object.
 class TemporaryFile {
  public:
   TemporaryFile() : file_(fs::temp_directory_path() / "motorcade_XXXXXX") {
@@ -48,7 +48,7 @@ class TemporaryFile {
   fs::path file_;
 };
 
-/// Runs one of Slurm's programs; none of them may wait for more than two minutes.
+/// Runs one of Slurm's programs, for two minutes at most.
 Answer ask(std::vector<std::string> words) {
   const TemporaryFile output;
   words.insert(words.begin(), "/usr/bin/env");
@@ -77,7 +77,7 @@ std::string submitScript(const fs::path& script, const std::vector<std::string>&
   if (!after.empty()) words.push_back("--dependency=afterany:" + joined(after, ":"));
   words.push_back(script.string());
   const Answer answer = ask(words);
-  // Warnings come before the number, and behind it, after a semicolon, the name of a cluster.
+  // The output may have warnings before the number, and a semicolon and the name of a cluster behind it.
   const std::string line = answer.text.substr(answer.text.find_last_of('\n') + 1);
   std::string job = line.substr(0, line.find(';'));
   if (answer.exit_code != 0 || job.empty() ||
@@ -98,7 +98,7 @@ std::size_t largestArray() {
 
 namespace {
 
-/// Of a line JOB|INDEX|STATE|REASON; the index of a job without elements is N/A.
+/// Parses a line JOB|INDEX|STATE|REASON; the index of a job without elements is N/A.
 QueuedElement elementOf(const std::string& line) {
   std::istringstream fields(line);
   QueuedElement element;

@@ -8,8 +8,8 @@
 /// Slurm's own programs, found by PATH.
 namespace motorcade {
 
-/// Submits a script and gives the job's number. `after`: only when these jobs have ended, well or not. Throws
-/// UsageError with what sbatch complains of.
+/// Submits a script and returns the job's number. It starts only when the jobs `after` have ended, well or not. Throws
+/// UsageError with sbatch's message.
 std::string submitScript(const std::filesystem::path& script, const std::vector<std::string>& after);
 
 /// The largest index of an array plus one; Slurm's default where there is no Slurm.
@@ -21,10 +21,10 @@ struct QueuedElement {
   std::size_t index = 0;          // in its array
   std::string state{}, reason{};  // as squeue names them
 };
-/// Those of these jobs. No value where there is no Slurm, or it does not answer.
+/// The queued elements of these jobs. No value where there is no Slurm, or it does not answer.
 std::optional<std::vector<QueuedElement>> queuedElements(const std::vector<std::string>& jobs);
 
-/// Throws UsageError with what scancel complains of.
+/// Throws UsageError with scancel's message.
 void cancelJobs(const std::vector<std::string>& jobs);
 
 }  // namespace motorcade

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// As one word of a shell.
+/// Quotes a text as one word of a shell.
 std::string quoted(const std::string& text) {
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// What the user asks of Slurm.
+/// The user's options for Slurm.
 struct SlurmOptions {
   std::string partition{}, time{};  // as sbatch takes them; its defaults when empty
   int array_limit = 0;              // tasks at the same time; 0 for as many as there is room for
@@ -21,19 +21,19 @@ struct SlurmArray {
   bool only_render = false;
 };
 
-/// Scripts for sbatch, with all that it is told as #SBATCH lines. `program` is this program's file, `batch` the folder
-/// of the batch, `submission` that of the submission, for logs; all are absolute.
+/// Scripts for sbatch, with all options as #SBATCH lines. `program` is this program's file, `batch` the folder of the
+/// batch, `submission` that of the submission, for logs; all are absolute.
 struct SlurmScripts {
   std::filesystem::path program{}, batch{}, submission{};
   int threads = 2;
   SlurmOptions options{};
 
   std::string array(const SlurmArray& array) const;
-  /// What merges the results, when all arrays have ended.
+  /// The script that merges the results when all arrays have ended.
   std::string merge() const;
 };
 
-/// Throws UsageError where a path has a character that a line #SBATCH cannot hold.
+/// Throws UsageError where a path has a character that an #SBATCH line cannot hold.
 void requireWritableInScript(const std::filesystem::path& path);
 
 }  // namespace motorcade

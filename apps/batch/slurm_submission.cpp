@@ -43,7 +43,7 @@ SlurmSubmission submissionOf(const Json& json) {
 
 fs::path jobsIn(const fs::path& submission) { return submission / "jobs.json"; }
 
-/// The next free number; the folder is made.
+/// Creates the folder with the next free number.
 fs::path newSubmissionFolder(const BatchFolder& folder) {
   std::error_code error;
   fs::create_directories(folder.cluster(), error);
@@ -77,7 +77,7 @@ class Submitter {
   Submitter(SlurmScripts scripts, fs::path folder)
       : scripts_(std::move(scripts)), largest_(largestArray()), submission_{.folder = std::move(folder)} {}
 
-  /// An array for these tasks, or several where Slurm allows no array as long.
+  /// Adds an array for these tasks, or several where Slurm allows none of that size.
   std::vector<std::string> addArrays(const std::string& name, const std::vector<const Task*>& tasks, bool only_render,
                                      const std::vector<std::string>& after) {
     const fs::path list = submission_.folder / (name + ".txt");

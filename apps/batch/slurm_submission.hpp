@@ -23,16 +23,16 @@ struct SlurmSubmission {
   std::vector<Job> jobs{};
 };
 
-/// Writes the scripts for these tasks, one array for the scenes that must be rendered before, and submits them; the
-/// results are merged when all have ended. What was submitted is noted before the next is. Throws UsageError where
-/// Slurm refuses, OutputError.
+/// Writes the scripts for these tasks and submits them. Scenes to be rendered first get an array of their own, and the
+/// results are merged when all have ended. Each submission is noted before the next is made. Throws UsageError where
+/// Slurm refuses, and OutputError.
 SlurmSubmission submitTasks(const std::vector<const Task*>& tasks, const BatchFolder& folder,
                             const SlurmOptions& options);
 
 /// All submissions of a batch, the first one first.
 std::vector<SlurmSubmission> readSubmissions(const BatchFolder& folder);
 
-/// What Slurm says of tasks of a batch that have not ended, by their names. No value where it does not answer.
+/// Slurm's state of the tasks of a batch that have not ended, by their names. Empty where Slurm does not answer.
 std::optional<std::map<std::string, QueuedElement>> queuedTasks(const BatchFolder& folder);
 
 /// The names of tasks in a list, by line.

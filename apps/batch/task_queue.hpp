@@ -12,8 +12,8 @@
 
 namespace motorcade {
 
-/// What is still to do, for several workers: tasks in their order, and before those of a scene its rendering, once. A
-/// task whose sequence somebody renders is passed over until that is done. Thread safe.
+/// The remaining work, shared by several workers: the tasks in their order, and each scene's rendering, once, before
+/// its tasks. A task whose sequence is being rendered is passed over until that is done. Thread safe.
 class TaskQueue {
  public:
   struct Item {
@@ -26,9 +26,9 @@ class TaskQueue {
 
   /// Waits until something can be done; empty when nothing is left or the queue was stopped.
   std::optional<Item> next();
-  /// Whoever took an item says when it is done, well or not.
+  /// A worker that took an item calls this when it is done, well or not.
   void done(const Item& item);
-  /// Nothing further is given out.
+  /// Gives out no further items.
   void stop();
 
  private:

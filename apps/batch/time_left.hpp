@@ -8,17 +8,17 @@
 
 namespace motorcade {
 
-/// How much work a task is, in frames; also of one whose frames are not known.
+/// The work of a task in frames, with its overhead. A task whose frames are not known counts its overhead alone.
 double weightOf(const Task& task);
 
 /// Frames that a run has written so far.
 double framesWritten(const std::filesystem::path& run);
 
-/// Tells how long the rest of the work will take, from how long the work so far took.
+/// Predicts the time that the rest of the work will take from the time of the work so far.
 class TimeLeft {
  public:
   explicit TimeLeft(double whole) : whole_(whole) {}
-  /// As `2 h 5 min left`; says that it is not known before any work is done.
+  /// Text such as `2 h 5 min left`. Before any work is done it says that the time is not known.
   std::string text(double done) const;
 
  private:
@@ -27,7 +27,7 @@ class TimeLeft {
   Clock::time_point start_ = Clock::now();
 };
 
-/// As `2 h 5 min`, `3 min`, `40 s`.
+/// Text such as `2 h 5 min`, `3 min`, `40 s`.
 std::string durationText(double seconds);
 
 }  // namespace motorcade

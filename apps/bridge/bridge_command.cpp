@@ -29,7 +29,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The folder's own name, that of `.` too.
+/// The folder's own name, also for the path `.`.
 std::string nameOf(const std::filesystem::path& drive) {
   std::error_code unreachable;  // then the name is that which was given
   return std::filesystem::weakly_canonical(drive, unreachable).filename().string();
@@ -49,7 +49,7 @@ Recording opened(const std::filesystem::path& drive) {
   }
 }
 
-/// One pass of the drive through one tracker. Gives the number of pairs that a newer one replaced.
+/// Plays the drive once through one tracker. Returns the number of pairs that a newer one replaced.
 std::int64_t playOnce(Tracker& tracker, DrivePlayer& player, const DrivePlayer::Pace& pace, ResultPublisher results,
                       Progress& progress, std::stop_source& stop) {
   std::int64_t done = 0;

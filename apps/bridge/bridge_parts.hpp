@@ -19,14 +19,14 @@ void logToSpdlog(Tracker::LogLevel level, const std::string& text);
 /// The public interface's error, without the name of the field: users know files and options.
 std::string textOf(const Error& error);
 
-/// Throws UserError; `input` is what has the camera.
+/// Throws UserError; `input` names the source of the camera.
 std::unique_ptr<Tracker> makeTracker(const Camera& camera, const Tracker::Options& tracker_options,
                                      const BridgeOptions& options, const std::string& input);
 
 void tellPlace(const DdsPublisher& out, const DdsPlace& place, const std::set<Topic>& topics);
 void tellPublished(const std::vector<DdsPublisher::Counts>& topics);
 
-/// Waits for as many as the options want, as long as they want.
+/// Waits for the options' number of subscribers, up to the options' time.
 void awaitSubscribers(const DdsPublisher& out, const BridgeOptions& options, const std::stop_token& stop);
 
 }  // namespace motorcade

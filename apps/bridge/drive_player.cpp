@@ -20,7 +20,7 @@ bool sleepUntil(Clock::time_point due, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
-/// When what was captured so long after the first pair is to be pushed.
+/// The time at which to push a pair that was captured `after_first_ns` after the first one.
 Clock::time_point due(Clock::time_point start, std::int64_t after_first_ns, double speed) {
   const std::chrono::duration<double, std::nano> wait(static_cast<double>(after_first_ns) / speed);
   return start + std::chrono::duration_cast<Clock::duration>(wait);
@@ -38,7 +38,7 @@ double DrivePlayer::captureRate_hz() const { return recording_.size() > 1 ? 1e9 
 
 void DrivePlayer::play(Tracker& tracker, const Pace& pace, const std::stop_token& stop) {
   const auto start = Clock::now();
-  // A camera that does not wait has the pair behind it already.
+  // A pair is overtaken when the next one is due already.
   const auto overtaken = [&](std::int64_t index) {
     return pace.live && pace.speed && index + 1 < recording_.size() &&
            Clock::now() >= due(start, (index + 1) * period_ns_, *pace.speed);

@@ -22,8 +22,8 @@ class DrivePlayer {
   /// Throws Error where the drive has no pair.
   explicit DrivePlayer(Recording& recording);
 
-  /// Pushes all pairs in time, until asked to stop, then closes the tracker. Each pass has a tracker of its own; its
-  /// stamps go on where the last pass ended, a period later.
+  /// Pushes all pairs in time, until asked to stop, then closes the tracker. Each pass has a tracker of its own. Its
+  /// stamps continue where the last pass ended, a period later.
   void play(Tracker& tracker, const Pace& pace, const std::stop_token& stop);
 
   /// Pairs per captured second, 0 of a drive of one pair.

@@ -12,8 +12,8 @@
 
 namespace motorcade {
 
-/// Watches what comes on both image topics. A side that falls silent, and images that come on both but never make a
-/// pair, are told once; and once again when it is well.
+/// Watches both image topics. Reports once when a side falls silent, or when both sides' images never make a pair.
+/// Reports once more when all is well again.
 class InputWatch {
  public:
   using Clock = std::chrono::steady_clock;
@@ -52,7 +52,7 @@ class InputWatch {
   std::string problem_{};
 };
 
-/// The numbers that tell how the input fares.
+/// Counts that show the state of the input.
 struct InputCounts {
   std::int64_t pairs = 0;                     // handed to the tracker
   std::array<std::int64_t, 2> unpaired{};     // dropped without an image of the other side
@@ -60,7 +60,7 @@ struct InputCounts {
   std::int64_t overtaken = 0;                 // pairs that a newer one replaced before they were converted
 };
 
-/// The status of the input: ERROR where it has a problem.
+/// The status of the input: ERROR if it has a problem.
 ros::DiagnosticStatus inputStatusOf(const InputCounts& counts, const std::string& problem,
                                     const std::string& hardware_id);
 

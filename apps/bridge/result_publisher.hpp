@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// Turns the results of one tracker into the messages that are asked for, and publishes them. Call it in frame order.
+/// Turns the results of one tracker into the requested messages, and publishes them. Call it in frame order.
 class ResultPublisher {
  public:
   struct Params {

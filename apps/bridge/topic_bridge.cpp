@@ -31,7 +31,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Publishes how the input fares, each second: also while no results come.
+/// Publishes the status of the input, each second, also while no results come.
 class InputReport {
  public:
   InputReport(DdsPublisher& out, const TopicFeeder& feeder, std::string hardware_id)
@@ -62,7 +62,7 @@ bool awaitCameras(TopicFeeder& feeder, InputReport& report, const std::stop_toke
   return false;
 }
 
-/// Publishes what the tracker makes of the pairs, until the feeder ends.
+/// Publishes the tracker's results until the feeder ends.
 void follow(Tracker& tracker, TopicFeeder& feeder, ResultPublisher results, InputReport& report,
             std::stop_source& stop) {
   std::exception_ptr failure;

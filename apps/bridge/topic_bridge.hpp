@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Follows the topics of `--images` until a signal, or the number of pairs that was asked for. Gives the exit code;
+/// Follows the topics of `--images` until a signal comes, or the wanted number of pairs. Returns the exit code;
 /// failures are UserErrors.
 int runTopicBridge(const BridgeOptions& options);
 

@@ -104,7 +104,7 @@ void TopicFeeder::tellMissingInfos(Clock::time_point now) {
       "waiting for {} (sensor_msgs/CameraInfo); where nobody sends it, give --camera or --calibration", missing));
 }
 
-/// A pair of which nobody can tell the size is left out.
+/// Reads the cameras. A pair whose size cannot be determined is left out.
 void TopicFeeder::knowCameras() {
   while (!cameras_ && !pairs_.empty()) {
     std::optional<ImageSize> size;

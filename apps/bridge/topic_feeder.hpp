@@ -18,8 +18,8 @@
 
 namespace motorcade {
 
-/// Makes pairs of two topics' images and pushes them into a tracker, with the left image's stamp. First `awaitCameras`,
-/// then `feed`; `counts` and `problem` are for any thread.
+/// Pairs two topics' images and pushes them into a tracker, with the left image's stamp. First `awaitCameras`, then
+/// `feed`; `counts` and `problem` are for any thread.
 class TopicFeeder {
  public:
   struct Params {
@@ -30,8 +30,8 @@ class TopicFeeder {
   };
   TopicFeeder(ImageSubscriber& images, const Params& params);
 
-  /// Works until the cameras are known and a pair has come, or for so long. True once that is so. Throws InputError
-  /// where the calibration is of no use.
+  /// Works until the cameras are known and a pair has come, or until `patience` is over. Returns whether both are so.
+  /// Throws InputError where the calibration is of no use.
   bool awaitCameras(std::chrono::milliseconds patience);
   /// The camera of the rectified pairs.
   const Sequence& cameras() const { return *cameras_; }
@@ -46,9 +46,9 @@ class TopicFeeder {
 
   void takeInfos();
   void takeMotions(Tracker& tracker);
-  /// One image from the side on which fewer wait for a partner; false where there is none.
+  /// Takes one image from the side on which fewer wait for a partner; false where there is none.
   bool takeImage();
-  /// Takes up to the next pair where none may be lost, else all that came. False where there is nothing to be done.
+  /// Takes images up to the next pair if none may be lost, else all that came. False where there is nothing to do.
   bool takeImages();
   void keep(ReceivedPair pair);
   void tell(const InputWatch::News& news) const;

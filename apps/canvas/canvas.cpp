@@ -35,7 +35,7 @@ void setColor(cairo_t* context, Color color, double opacity) {
   cairo_set_source_rgba(context, color.red / 255.0, color.green / 255.0, color.blue / 255.0, opacity);
 }
 
-/// Adds a path; one that ends at a point that cannot be drawn begins anew behind it.
+/// Adds a path. It starts anew behind a point that cannot be drawn.
 void addPath(cairo_t* context, Canvas::Points points) {
   bool begun = false;
   for (const Vector2d& at : points) {
@@ -75,7 +75,7 @@ void addRounded(cairo_t* context, const Rectangle& rectangle, double radius_px) 
   cairo_close_path(context);
 }
 
-/// Without hinting: letters are the same wherever they stand, and whatever the machine prefers.
+/// Selects the font without hinting, so that letters look the same at any position and on any machine.
 void selectFont(cairo_t* context, const TextStyle& style) {
   cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -88,7 +88,7 @@ void selectFont(cairo_t* context, const TextStyle& style) {
   cairo_font_options_destroy(options);
 }
 
-/// Gives the text to `use` as glyphs; a text that is no UTF-8 would end all drawing on the context.
+/// Passes the text to `use` as glyphs. A text that is not UTF-8 would end all drawing on the context.
 template <class Use>
 void withGlyphs(cairo_t* context, std::string_view given, const Use& use) {
   std::string text(given);
@@ -107,7 +107,7 @@ void withGlyphs(cairo_t* context, std::string_view given, const Use& use) {
   }
 }
 
-/// As Cairo keeps it: blue, green, red and nothing.
+/// Copies to Cairo's layout: blue, green, red and an unused byte.
 void copyGray(const Image& image, std::uint8_t* to, int stride) {
   for (int y = 0; y < image.height(); ++y) {
     const std::uint8_t* gray = image.row(y);

@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// How a line is drawn.
+/// Style of a line.
 struct Pen {
   Color color{};
   double width_px = 1;
@@ -22,7 +22,7 @@ struct Pen {
   std::vector<double> dashes_px{};  // on, off, ...; solid when empty
 };
 
-/// How an area is filled.
+/// Style of an area.
 struct Fill {
   Color color{};
   double opacity = 1;
@@ -34,8 +34,8 @@ struct TextStyle {
   bool bold = false;
 };
 
-/// A color image to draw on, anti-aliased, with Cairo. Coordinates are pixels, whole numbers at pixel centers; drawings
-/// are clipped, and points that are not finite, or a million pixels away, are left out.
+/// A color image to draw on, anti-aliased, with Cairo. Coordinates are pixels, whole numbers at pixel centers. Drawings
+/// are clipped. Points that are not finite, or a million pixels away, are left out.
 class Canvas {
  public:
   using Points = std::span<const Eigen::Vector2d>;
@@ -50,8 +50,8 @@ class Canvas {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// A part of this canvas as one of its own, with its upper left corner as origin: what is drawn there is drawn here,
-  /// clipped to the part. This canvas must live longer.
+  /// A part of this canvas as one of its own, with its upper left corner as origin. Drawings on it appear here, clipped
+  /// to the part. This canvas must live longer.
   Canvas part(int left, int top, int width, int height);
 
   void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Pen& pen);
@@ -62,7 +62,7 @@ class Canvas {
   void arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Pen& pen);
   void dot(const Eigen::Vector2d& at, double radius_px, const Fill& fill);
   void fillRounded(const Rectangle& rectangle, double radius_px, const Fill& fill);
-  /// DejaVu Sans; `at` is the left end of the base line. What is no UTF-8 is shown as question marks.
+  /// Draws text in DejaVu Sans; `at` is the left end of the base line. Bytes that are not UTF-8 become question marks.
   void text(const Eigen::Vector2d& at, std::string_view text, const TextStyle& style);
   static double textWidth(std::string_view text, const TextStyle& style);
   /// A gray image, scaled to the rectangle.
@@ -77,7 +77,7 @@ class Canvas {
   int width_, height_;
 };
 
-/// Corners of an ellipse about a center, `axes` taking the unit circle to it.
+/// Corners of an ellipse about a center; `axes` takes the unit circle to it.
 std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& center, const Eigen::Matrix2d& axes);
 
 }  // namespace motorcade

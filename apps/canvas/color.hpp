@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// Of 0 to 255 each.
+/// RGB color, 0 to 255 each.
 struct Color {
   int red = 0, green = 0, blue = 0;
 };
@@ -17,10 +17,10 @@ inline Color between(Color from, Color to, double share) {
   return {mixed(from.red, to.red), mixed(from.green, to.green), mixed(from.blue, to.blue)};
 }
 
-/// Halfway to white: for points on what has the color itself.
+/// Halfway to white, for points on a surface of that color.
 inline Color lightened(Color color) { return between(color, {255, 255, 255}, 0.5); }
 
-/// As printf, for labels.
+/// Formats like printf, for labels.
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
   std::array<char, 128> text;

@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// Upright, in pixels of a canvas.
+/// An upright rectangle in pixels of a canvas.
 struct Rectangle {
   double left = 0, top = 0, width = 0, height = 0;
 
@@ -20,7 +20,7 @@ struct Rectangle {
     return other.left >= left && other.right() <= right() && other.top >= top && other.bottom() <= bottom();
   }
   bool contains(const Eigen::Vector2d& at) const { return contains(Rectangle{at.x(), at.y(), 0, 0}); }
-  /// Of the area that both cover; 0 where they do not meet.
+  /// The area that both cover; 0 where they do not meet.
   double overlap(const Rectangle& other) const {
     const double across = std::min(right(), other.right()) - std::max(left, other.left);
     const double down = std::min(bottom(), other.bottom()) - std::max(top, other.top);

@@ -35,8 +35,9 @@ bool isOutside(const Middle& middle) {
 
 bool isFar(double share) { return share < 0.3 || share > 0.7; }
 
-/// A calibration of images that were larger or smaller moves both shares alike. Images with a side cut off, or two in
-/// one, move that across; nobody cuts so much off there. Sky or bonnet cut off moves that down alone, which is fine.
+/// True when the calibration seems to be of larger or smaller images, which moves both shares alike. Images with a side
+/// cut off, or two in one, move the horizontal share; nobody cuts off so much there. Sky or bonnet cut off moves the
+/// vertical share alone, which is fine.
 bool isOfAnotherSize(const Middle& middle) {
   constexpr double kAlike = 0.12;
   const bool both = std::min(middle.across, middle.down) > 0.65 || std::max(middle.across, middle.down) < 0.35;

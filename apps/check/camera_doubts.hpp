@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// What of a calibration no stereo camera on a car has, in sentences that say how to mend it: units other than meters,
-/// another image size.
+/// Properties that no stereo camera on a car has, such as units other than meters or another image size. Each sentence
+/// says how to mend the calibration.
 std::vector<std::string> doubtsAbout(const StereoCamera& camera);
 
 /// Properties that a stereo camera may have but seldom does, in sentences that name their possible cause.

@@ -32,7 +32,7 @@ namespace {
 constexpr int kExitInput = 3;
 constexpr std::size_t kShownPairs = 3;
 
-/// The pairs that came, and those that cannot be used.
+/// Counts of the pairs that came, and of those that cannot be used.
 struct Seen {
   std::size_t pairs = 0, unusable = 0;
   std::string first_problem;
@@ -47,7 +47,7 @@ struct Seen {
   }
 };
 
-/// Shows the first pairs of the sequence, after faults, to the check.
+/// Shows the first pairs of the sequence to the check, after faults were injected.
 Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& options) {
   const FrameRange range = selectedFrames(options.frames, sequence);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
@@ -75,7 +75,7 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
   return seen;
 }
 
-/// The own vehicle where it hides much of what lies ahead.
+/// A finding if the own vehicle hides much of the view ahead.
 std::optional<Finding> ownVehicleFinding(const std::optional<OwnVehicleView>& view) {
   constexpr double kMuch = 0.1;  // of the image
   if (!view || view->share <= kMuch) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<Finding> ownVehicleFinding(const std::optional<OwnVehicleView>& vi
                  false};
 }
 
-/// All that is wrong; without any pair that can be used nothing else is known.
+/// All findings. Without any usable pair nothing else is known.
 std::vector<Finding> findingsOf(const InputCheck& check, const Seen& seen, const Sequence& sequence,
                                 const FrameRange& range) {
   constexpr std::size_t kMosaicPairs = 3;

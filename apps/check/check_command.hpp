@@ -17,8 +17,8 @@ struct CheckOptions {
   std::filesystem::path page;  // HTML, with pictures
 };
 
-/// Says what of a sequence's first pairs would make results worse, or worthless, and prints what was measured.
-/// Gives the exit code: 3 where they would be worthless.
+/// Prints what in a sequence's first pairs would make results worse or worthless, and what was measured. Returns the
+/// exit code: 3 where results would be worthless.
 int runCheck(const CheckOptions& options);
 
 }  // namespace motorcade

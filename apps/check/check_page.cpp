@@ -63,8 +63,8 @@ std::string headOf(const CheckedInput& input) {
   return html;
 }
 
-/// What was measured, without the advice behind it, which the guide gives at more length; that on a calibration tells
-/// which of its numbers is meant, and stays.
+/// The measured part of a finding's text. The advice behind it is left to the guide, which gives it at more length.
+/// Advice on a calibration tells which of its numbers is meant, and stays.
 std::string measuredText(const Finding& finding) {
   std::string_view text = finding.text;
   if (finding.name != "calibration") text = text.substr(0, text.rfind("; "));

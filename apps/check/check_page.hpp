@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a page of `check` tells.
+/// Content of a page of `check`.
 struct CheckedInput {
   std::string sequence;
   StereoCamera camera;
@@ -17,8 +17,8 @@ struct CheckedInput {
   std::vector<MatchedPair> worst;  // the pairs whose rows agree least
 };
 
-/// A whole HTML page that stands in one file: what was looked at, what was found and how to mend it, pictures of the
-/// pairs, and all that was measured.
+/// A whole HTML page in one file: the input, the findings and their remedies, pictures of the pairs, and all
+/// measurements.
 std::string checkPage(const CheckedInput& input);
 
 }  // namespace motorcade

@@ -27,7 +27,7 @@ Color colorOf(double error_px) {
   return size_px <= kGood_px ? kGood : size_px <= kFair_px ? kFair : kBad;
 }
 
-/// Of nine tenths of the errors, the largest.
+/// The 90th percentile of the errors' magnitudes.
 double largeError_px(std::vector<double> errors_px) {
   if (errors_px.empty()) return 0;
   for (double& error_px : errors_px) error_px = std::abs(error_px);
@@ -36,14 +36,14 @@ double largeError_px(std::vector<double> errors_px) {
   return *at;
 }
 
-/// The round factor by which errors are enlarged, so that large ones are about `wanted` pixels of the picture.
+/// The round factor that enlarges errors such that large ones take about `wanted` pixels of the picture.
 double enlargement(double error_px, double scale, double wanted) {
   for (const double factor : {20., 15., 10., 8., 6., 5., 4., 3., 2.})
     if (factor * scale * error_px <= wanted) return factor;
   return 1;
 }
 
-/// One match of each band of rows, that of the middle error: enough to see, and none of the wrong ones.
+/// The match with the median error in each band of rows: enough to see, and without wrong matches.
 std::vector<EpipolarMatch> chosen(std::span<const EpipolarMatch> matches, double band_px) {
   std::map<int, std::vector<EpipolarMatch>> bands;
   for (const EpipolarMatch& match : matches) bands[static_cast<int>(match.v_left_px / band_px)].push_back(match);
@@ -92,7 +92,7 @@ double usualDisparity_px(std::span<const EpipolarMatch> matches) {
   return median(disparities_px);
 }
 
-/// What the geometry makes of the rows at places across the image.
+/// Row errors that the geometry predicts at positions across the image.
 std::vector<std::pair<Vector2d, double>> rowErrorField(const Canvas& image, double scale, double disparity_px,
                                                        const PairGeometry& geometry, const StereoCamera& camera) {
   constexpr int kColumns = 17;
@@ -104,7 +104,7 @@ std::vector<std::pair<Vector2d, double>> rowErrorField(const Canvas& image, doub
   return field;
 }
 
-/// How long an arrow of a round row error is.
+/// Draws an arrow of a round row error as a scale.
 void drawScale(Canvas& canvas, double top, double shown_per_px) {
   constexpr double kLong_px = 60;
   double unit_px = 0.1;

@@ -16,12 +16,12 @@ struct MatchedPair {
   std::span<const EpipolarMatch> matches;
 };
 
-/// Both images side by side, with lines along rows from points on the left to their partners on the right; where a
-/// partner lies above or below the line, a bar shows by how much, enlarged as the legend says, and in color.
+/// Both images side by side, with lines along rows from points on the left to their partners on the right. Where a
+/// partner lies above or below the line, a colored bar shows the distance, enlarged as the legend says.
 RgbImage drawEpipolarLines(const MatchedPair& pair);
 
-/// The left image with the row errors of all matches as thin bars, and as arrows what the measured geometry makes of
-/// the rows across the image; with a scale.
+/// The left image with the row errors of all matches as thin bars. Arrows show the row errors that the measured
+/// geometry predicts across the image. A scale is added.
 RgbImage drawRowErrors(const Image& left, std::span<const EpipolarMatch> matches, const PairGeometry& geometry,
                        const StereoCamera& camera);
 

@@ -8,15 +8,15 @@
 
 namespace motorcade {
 
-/// What a finding means for results, and what a user does about it.
+/// The meaning of a finding for results, and the user's remedy.
 struct FindingGuide {
   std::string_view title, meaning, mend;
 };
 
-/// By the finding's name; general words for one that has none of its own.
+/// The guide by the finding's name; general words for one that has none of its own.
 FindingGuide guideTo(std::string_view finding);
 
-/// Results with one of these would be.
+/// True when one of the findings makes results worthless.
 bool isWorthless(std::span<const Finding> findings);
 
 /// A sentence on what `run` does with these findings.

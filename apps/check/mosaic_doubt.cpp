@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// The patterns that one image is suspected of. Colors, and what cannot be read, are no mosaic.
+/// The patterns that one image is suspected of. Color images and unreadable ones are no mosaic.
 std::optional<std::string> suspicionOf(const std::filesystem::path& file, const Sequence& sequence, ImagePool& pool) {
   const int sample_bits = sequence.samples ? sequence.samples->bits : kAllSampleBits;
   try {

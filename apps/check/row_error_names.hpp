@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// How an error of the rows is named and shown.
+/// Name, keys and shown unit of an error of the rows.
 struct RowErrorName {
   const char* title;    // with the unit that it is shown in
   const char* key;      // in JSON, in the units of RowErrorEstimate
@@ -16,7 +16,7 @@ struct RowErrorName {
   double unit = 1;      // shown value per value
 };
 
-/// In the order of RowError.
+/// Names in the order of RowError.
 inline constexpr std::array<RowErrorName, kRowErrors> kRowErrorNames{{
     {"row offset [px]", "rows_px", "rows", "the right image's content lies lower"},
     {"roll [deg]", "roll_rad", "roll", "the right image is turned clockwise", 180 / std::numbers::pi},

@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// The line that `run` and `check` begin with: layout, frames, camera, and the calibration in force.
+/// The first line of `run` and `check`: layout, frames, camera, and the calibration in force.
 std::string sequenceLine(const Sequence& sequence, const FrameRange& range);
 
 }  // namespace motorcade

@@ -53,7 +53,7 @@ void addWhat(CLI::App& command, BridgeOptions& options) {
       ->type_name("WORLD,CHILD");
 }
 
-/// The options for topics that are followed in place of a drive.
+/// Adds the options for topics that are followed in place of a drive.
 void addImages(CLI::App& command, BridgeOptions& options, CLI::Option* drive) {
   constexpr double kLeastWithin_ms = 1e-3, kMostWithin_ms = 1000;
   CLI::Option* const images =

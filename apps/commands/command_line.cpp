@@ -28,13 +28,14 @@ void addHelp(CLI::App& app, std::optional<std::string>& asked) {
   command->callback([topic, &asked] { asked = *topic; });
 }
 
-/// How much of the log the user wants to see.
+/// The user's choice of how much of the log is shown.
 struct Talk {
   bool quiet = false, verbose = false;
   std::string level;
 };
 
-/// To the program and to each command, so that they may stand before and behind its name.
+/// Adds the log's options to the program and to each command, so that they may stand before and behind the command's
+/// name.
 void addTalk(CLI::App& app, Talk& talk) {
   const auto names = logLevelNames();
   constexpr const char* kGroup = "Messages";
@@ -81,7 +82,7 @@ std::string complaintAboutOption(const std::string& word, const CLI::App& app) {
   return "unknown option " + name + suggestion(nearest.empty() ? "" : "--" + nearest);
 }
 
-/// The command that was named, or the program itself; of a command that has some of its own, the one named behind it.
+/// The command that was named, or the program itself. For a command with subcommands it is the one named behind it.
 struct Named {
   const CLI::App* command;
   std::string name;  // with those before it
@@ -93,7 +94,7 @@ Named namedCommand(const CLI::App& app) {
   return named;
 }
 
-/// What is wrong with a word that nothing expected.
+/// Describes what is wrong with an unexpected word.
 std::string complaintAbout(const std::string& word, const CLI::App& app) {
   const CLI::App& command = *namedCommand(app).command;
   if (word.starts_with('-') && word.find_first_not_of('-') != std::string::npos)
@@ -101,7 +102,7 @@ std::string complaintAbout(const std::string& word, const CLI::App& app) {
   return &command == &app ? complaintAboutCommand(word, app) : "unexpected argument " + word;
 }
 
-/// Tells what is wrong with the command line. What nobody knows comes first: a misspelled option is what makes a
+/// Prints what is wrong with the command line. Unknown words come first, as a misspelled option is what makes a
 /// required one missing.
 int fail(const CLI::App& app, const std::string& problem) {
   const auto unknown = app.remaining(true);

@@ -4,8 +4,8 @@
 
 namespace motorcade {
 
-/// What a command line asks for: an action that gives the exit code; or, where the parser has answered itself (help,
-/// version, a usage error), no action but the exit code.
+/// The action that a command line asks for, which returns the exit code. Where the parser has answered itself (help,
+/// version, a usage error), there is no action but the exit code.
 struct CommandLine {
   std::function<int()> action;
   int exit_code = 0;

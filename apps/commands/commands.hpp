@@ -10,7 +10,7 @@ class App;
 /// include CLI11, which takes long to compile.
 namespace motorcade {
 
-/// What a command line asks for; gives the exit code.
+/// The action of a command; returns the exit code.
 using Action = std::function<int()>;
 
 /// Each adds its command; when the command line names it, `action` is set.

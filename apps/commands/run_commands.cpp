@@ -68,7 +68,7 @@ void addPace(CLI::App& command, RunOptions& options) {
                    "Behave like a camera that does not wait: the newest pair wins, others are dropped");
 }
 
-/// The input, all that tells of it, and the folder of the results. A bag's topics may be listed without such a folder.
+/// Adds the input, its options, and the folder of the results. A bag's topics may be listed without such a folder.
 void addInputAndFolder(CLI::App& command, RunOptions& options) {
   CLI::Option* const input =
       command.add_option("SEQUENCE", options.sequence, std::string(kSequenceHelp) + kRunInputHelp)->required();
@@ -79,7 +79,7 @@ void addInputAndFolder(CLI::App& command, RunOptions& options) {
   input->each([out](const std::string& path) { out->required(!isBag(path)); });
 }
 
-/// What a run writes and serves for the eye, beside its folder of results.
+/// Adds the options for what a run writes and serves to be looked at, beside its folder of results.
 void addWaysToSee(CLI::App& command, RunOptions& options) {
   command.add_flag("--masks", options.masks,
                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
@@ -96,7 +96,7 @@ void addWaysToSee(CLI::App& command, RunOptions& options) {
       ->default_str("");
 }
 
-/// The options that tell what is known beside the images.
+/// Adds the options for knowledge that comes beside the images.
 void addWhatComesBeside(CLI::App& command, RunOptions& options) {
   command
       .add_option(

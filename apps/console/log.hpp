@@ -13,14 +13,14 @@ void logInfo(std::string_view message);
 void logWarning(std::string_view message);
 void logError(std::string_view message);
 
-/// In color where that output is a terminal and the environment does not say NO_COLOR (https://no-color.org).
+/// Starts the log. It is colored on a terminal, unless the environment says NO_COLOR (https://no-color.org).
 void startLog();
 
-/// `trace`, `debug`, `info`, `warning`, `error`, `critical`, `off`: each shows the messages of the later ones too.
+/// `trace`, `debug`, `info`, `warning`, `error`, `critical`, `off`: each also shows the messages of those after it.
 std::vector<std::string> logLevelNames();
 void setLogLevel(const std::string& name);
 
-/// Whether the user wants to read more than warnings and errors: progress and short reports.
+/// True when the user wants to read more than warnings and errors: progress and short reports.
 bool tellsProgress();
 
 }  // namespace motorcade

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// The file of the program that runs. Throws UsageError where /proc does not tell.
+/// The file of the running program. Throws UsageError where /proc does not tell.
 std::filesystem::path ownProgram();
 
 }  // namespace motorcade

@@ -16,7 +16,7 @@ namespace {
 constexpr auto kBarPeriod = std::chrono::milliseconds(100);
 constexpr auto kLinePeriod = std::chrono::seconds(3);
 
-/// Of the standard error output's terminal, which the user may have made wider or narrower since.
+/// Columns of the terminal of standard error. It is asked each time, as the user may resize it.
 std::size_t terminalColumns() {
   constexpr std::size_t kUsual = 80;  // of terminals that do not know
   winsize size{};

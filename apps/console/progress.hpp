@@ -6,21 +6,21 @@
 
 namespace motorcade {
 
-/// A bar of what is done, as far as there is room for it, and the text: at most so many columns.
+/// A progress bar, as far as there is room for it, and the text, of at most `columns` columns.
 std::string progressLine(double share_done, const std::string& text, std::size_t columns);
 
-/// Shows how far the work is: a bar on a terminal, in one line of it, a plain line every few seconds otherwise. Writes
-/// to the standard error output, and nothing where the user wants to read warnings and errors only.
+/// Shows the progress of the work: a bar in one line of a terminal, or a plain line every few seconds. Writes to
+/// standard error, and nothing if the user wants warnings and errors only.
 class Progress {
  public:
-  /// `item` is the singular of what is counted; `count` is 0 where nobody knows how many there are.
+  /// `item` is the singular of the counted things; `count` is 0 if it is not known.
   Progress(std::string item, std::size_t count);
   /// Ends the bar's line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// So many are done, and what else there is to say.
+  /// Shows how many items are done, and a further text.
   void show(std::size_t done, const std::string& more = "");
 
  private:

@@ -10,9 +10,9 @@ namespace motorcade {
 
 inline constexpr int kExitSignal = 128;  // plus the signal that ended the program, as shells have it
 
-/// Waits for SIGINT and SIGTERM on a thread of its own, so that the work can end in order; a second signal ends the
+/// Waits for SIGINT and SIGTERM on a thread of its own, so that the work can end in order. A second signal ends the
 /// program at once, unless it comes within a second: `timeout` and terminals send the same one to a process and to its
-/// group. Make it before the threads that are to be spared: they inherit that both signals are blocked.
+/// group. Create it before other threads: they inherit that both signals are blocked.
 class StopSignals {
  public:
   StopSignals();
@@ -21,9 +21,9 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Calls `stop`, once, when a signal comes, from the thread that is returned; watching ends with that thread.
+  /// Starts a thread that calls `stop`, once, when a signal comes; watching ends with that thread.
   [[nodiscard]] std::jthread watch(std::function<void()> stop);
-  /// The signal that came, 0 when none did.
+  /// The received signal, 0 when there was none.
   int received() const { return received_.load(); }
 
  private:

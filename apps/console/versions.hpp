@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// What the program is made of, by name: itself, how it was built, and its libraries.
+/// The program, its build and its libraries, by name.
 std::vector<std::pair<std::string, std::string>> versions();
 
 /// The same as lines for the user; the first one has the program's name and version.

@@ -33,7 +33,7 @@ std::string pictureName(std::int64_t frame) {
   return name;
 }
 
-/// Pictures per second at which a drive's every Nth frame was taken.
+/// Pictures per second, when every Nth frame of a drive is taken.
 double rateOf(const RecordedDrive& drive, int every) {
   constexpr double kLeast_hz = 0.1, kMost_hz = 240, kUsual_hz = 10;
   std::vector<double> periods_s;
@@ -46,7 +46,7 @@ double rateOf(const RecordedDrive& drive, int every) {
   return std::clamp(1 / (*middle * every), kLeast_hz, kMost_hz);
 }
 
-/// Where pictures go.
+/// The target of pictures: a folder or a video.
 class Gallery {
  public:
   Gallery(const DrawOptions& options, double rate_hz, const std::atomic<bool>& stop)
@@ -95,7 +95,7 @@ class Gallery {
   int pictures_ = 0;
 };
 
-/// Frames of the run that are asked for; one whose files cannot be read is told of and left out.
+/// Draws the wanted frames. One whose files cannot be read is reported and left out.
 void drawAll(const DrawOptions& options, const Sequence& sequence, const RecordedDrive& drive,
              const std::atomic<bool>& stop, Gallery& gallery) {
   PairReader reader(sequence);

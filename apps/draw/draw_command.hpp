@@ -15,9 +15,9 @@ struct DrawOptions {
   int every = 1;
 };
 
-/// Draws frames of a run as PNG pictures `frame_NNNNNN.png`, as a video of the pace at which they were taken, or both.
-/// Where no ffmpeg is installed, the video's pictures go into a folder of its name instead. Gives the exit code, that
-/// of the signal where one came. Failures are UserErrors.
+/// Draws frames of a run as PNG pictures `frame_NNNNNN.png`, as a video at the pace of the capture, or both. Where no
+/// ffmpeg is installed, the video's pictures go into a folder of its name instead. Returns the exit code, that of the
+/// signal if one came. Failures are UserErrors.
 int runDraw(const DrawOptions& options);
 
 }  // namespace motorcade

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a frame of a sequence is drawn on, with the mask where the run wrote masks. Throws InputError naming the file.
+/// Reads the left image of a frame, and the mask where the run wrote masks. Throws InputError naming the file.
 DrawnImages readDrawnImages(const Sequence& sequence, std::size_t frame, const std::filesystem::path& run_folder,
                             PairReader& reader);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBarHeight_px = 30;
 
-/// Between the frames before and after, where both are there; not a number where the drive has less than two.
+/// Speed between the frames before and after, where both exist. NaN for a drive of fewer than two frames.
 double cameraSpeed_mps(const RecordedDrive& drive, std::size_t frame) {
   const std::size_t from = frame > 0 ? frame - 1 : 0, to = std::min(frame + 1, drive.T_world_cam.size() - 1);
   const double dt_s = secondsBetween(drive.stamps[from], drive.stamps[to]);
@@ -20,7 +20,7 @@ double cameraSpeed_mps(const RecordedDrive& drive, std::size_t frame) {
   return dt_s > 0 ? way_m / dt_s : std::nan("");
 }
 
-/// Which run and frame it is, and how fast the own car goes.
+/// Draws run, frame and the own car's speed.
 void drawBar(Canvas& canvas, const RecordedDrive& drive, std::size_t frame) {
   const TextStyle bold{.color = kInk, .size_px = 12.5, .bold = true}, plain{.color = kInk, .size_px = 12.5},
       dim{.color = kDimInk, .size_px = 11.5};

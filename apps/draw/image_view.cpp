@@ -45,7 +45,7 @@ struct Eye {
   }
 };
 
-/// Lines on a photo have a dark rim, or they are lost where it is bright.
+/// Draws lines on a photo with a dark rim, as they would be lost where it is bright.
 void drawOnPhoto(Canvas& canvas, Canvas::Points points, const Pen& pen) {
   canvas.polyline(points, {.color = kDark, .width_px = pen.width_px + 2, .opacity = 0.4 * pen.opacity});
   canvas.polyline(points, pen);
@@ -67,7 +67,7 @@ void drawBox(Sheet& sheet, const ObjectEstimate& object) {
   sheet.canvas.outline(corners, penOf(object, 2));
 }
 
-/// The twelve edges, as far as the object was seen; those that it hides itself are thin, all are dashed where it is
+/// Draws the twelve edges, as far as the object was seen. Edges that it hides itself are thin; all are dashed if it is
 /// only predicted.
 void drawCuboid(Sheet& sheet, const Eye& eye, const ObjectEstimate& object, const SeenExtent& extent) {
   const SE3 T_cam_body = eye.T_cam_world * object.T_world_body;
@@ -102,7 +102,7 @@ void drawPoints(Sheet& sheet, const std::vector<ObjectPoint>& points) {
   }
 }
 
-/// On the ground below the object, fading backwards.
+/// Draws the object's path on the ground below it, fading backwards.
 void drawWay(Sheet& sheet, const Eye& eye, const ObjectEstimate& object, const Vector3d& bottom_body) {
   constexpr std::size_t kWay_frames = 20;
   const std::size_t earliest = eye.frame - std::min(eye.frame, kWay_frames);

@@ -81,7 +81,7 @@ class Layout {
   static double shifted(const Candidate& candidate, const Rectangle& place) {
     return 0.5 * (std::abs(candidate.left - place.left) + std::abs(candidate.top - place.top));
   }
-  /// What of the anchors it would hide, in px of distance.
+  /// Cost of the anchors' area that it would hide, in px of distance.
   double hiding(const Rectangle& place) const {
     constexpr double kPerPixel = 0.03;
     double hidden = 0;

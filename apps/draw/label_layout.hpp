@@ -15,7 +15,7 @@ struct LabelRequest {
 };
 
 /// Places one label after the other, each where it is nearest to its anchor and hides least of the anchors. No two
-/// overlap, and all lie within the area; one that finds no room stays away.
+/// overlap, and all lie within the area. A label that finds no room is left out.
 std::vector<std::optional<Rectangle>> placeLabels(std::span<const LabelRequest> requests, const Rectangle& area);
 
 }  // namespace motorcade

@@ -104,7 +104,7 @@ std::vector<Entry> entries() {
 
 double widthOf(const Entry& entry) { return kSampleWidth_px + kGap_px + Canvas::textWidth(entry.text, kText); }
 
-/// Where each entry stands, row by row.
+/// Position of each entry, row by row.
 std::vector<Vector2d> flowed(const std::vector<Entry>& shown, int width) {
   std::vector<Vector2d> places;
   Vector2d at(kEdge_px, 0.5 * kRow_px + kEdge_px / 2);

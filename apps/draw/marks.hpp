@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// What pictures show, in the order of their legend.
+/// Kinds of marks in pictures, in the order of their legend.
 enum class Mark {
   kMask,
   kCuboid,
@@ -33,7 +33,7 @@ struct Sheet {
   Marks& marks;
 
   Rectangle area() const { return {0, 0, canvas.width() - 1.0, canvas.height() - 1.0}; }
-  /// To call with each mark's points; gives whether some of it can be seen.
+  /// Notes the mark for the legend if some of its points' line can be seen, and returns whether it can.
   bool note(Mark mark, Canvas::Points points);
 };
 

@@ -13,7 +13,7 @@
 namespace motorcade {
 namespace {
 
-/// Where a value's pixels lie.
+/// Bounding box of the pixels of one value.
 struct Bounds {
   int left, top, right, bottom;
 };
@@ -33,7 +33,8 @@ std::map<std::uint16_t, Bounds> boundsByValue(const Gray16Image& mask) {
   return all;
 }
 
-/// Whether each square of pixels shows one object alone: then masks were made of such cells, or larger ones.
+/// True when each square of pixels is all of the value or none of it. Masks are then made of such cells, or larger
+/// ones.
 bool isMadeOf(int cell_px, const Gray16Image& mask, std::uint16_t value, const Bounds& bounds) {
   const auto isSet = [&](int x, int y) {
     return mask.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width) +

@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// Tints what a mask shows of each object, in the color of its track, with a crisp rim.
+/// Tints each object's pixels of a mask in the color of its track, with a crisp rim.
 void paintMask(Sheet& sheet, const Gray16Image& mask);
 
 }  // namespace motorcade

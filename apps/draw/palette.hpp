@@ -11,8 +11,8 @@ namespace motorcade {
 inline constexpr Color kBackdrop{14, 18, 24}, kBar{22, 28, 36}, kGridLine{44, 53, 64}, kDark{10, 13, 18},
     kInk{232, 237, 243}, kDimInk{146, 158, 172}, kTruth{245, 245, 245}, kOwn{126, 172, 255};
 
-/// Each track its color, the same in every picture and on every page. None is blue, which is the camera's own, nor
-/// looks like it to who sees no red or no green; to them, too, colors of tracks that follow each other differ.
+/// Colors of tracks, the same in every picture and on every page. None is blue, which is the camera's own, nor looks
+/// like it to people who see no red or no green. To them, the colors of consecutive tracks differ, too.
 inline constexpr std::size_t kTrackColors = 10;
 Color trackColor(TrackId track);
 

@@ -20,7 +20,7 @@ double depthSigma_m(const StereoCamera& camera, const Vector3d& uvd_px) {
   return depth_m / uvd_px.z() * kDisparitySigma_px;
 }
 
-/// Where points of the object were seen on its body, as far as their depth is known well enough for its extent.
+/// Points of the object as seen in its body frame, where their depth is known well enough for its extent.
 std::vector<Vector3d> pointsOnBody(const RecordedDrive& drive, std::size_t frame, TrackId track) {
   constexpr double kSharp_m = 0.5;
   constexpr std::size_t kFrames = 100;
@@ -40,7 +40,7 @@ std::vector<Vector3d> pointsOnBody(const RecordedDrive& drive, std::size_t frame
   return points_body;
 }
 
-/// Of nine tenths of the points along an axis.
+/// The 5th and the 95th percentile of the points along an axis.
 std::pair<double, double> reach(const std::vector<Vector3d>& points_body, int axis) {
   std::vector<double> values;
   for (const Vector3d& p_body : points_body) values.push_back(p_body[axis]);
@@ -49,7 +49,7 @@ std::pair<double, double> reach(const std::vector<Vector3d>& points_body, int ax
   return {values[cut], values[values.size() - 1 - cut]};
 }
 
-/// Keeps at least a face's thickness of what the points reach of the cuboid.
+/// Cuts the points' range to the cuboid, but keeps at least the thickness of a face.
 std::pair<double, double> within(std::pair<double, double> range, double least, double most) {
   constexpr double kFace_m = 0.2;
   const double face = std::min(kFace_m, most - least);
@@ -57,7 +57,7 @@ std::pair<double, double> within(std::pair<double, double> range, double least, 
   return {from, std::clamp(range.second, from + face, most)};
 }
 
-/// The end that is seen from the camera stays, the other one comes nearer.
+/// Shortens the length by two standard deviations. The end that faces the camera stays.
 std::pair<double, double> sureOf(double least, double most, double sigma_m, bool seen_from_least) {
   const double length = std::max(0.0, most - least - 2 * sigma_m);
   return seen_from_least ? std::pair(least, least + length) : std::pair(most - length, most);

@@ -22,7 +22,7 @@ LabelRequest requestOf(const Tag& tag) {
   return {tag.anchor, std::ceil(std::max(name, facts) + kTagEdge_px + 2 * kPad_px), lines * kLine_px + 2 * kAbove_px};
 }
 
-/// From the plate to the nearest point of what it belongs to.
+/// Draws a line from the plate to the nearest point of its anchor.
 void drawThread(Canvas& canvas, const Rectangle& plate, const Tag& tag) {
   constexpr double kNear_px = 9;
   const auto nearest = [](const Rectangle& in, const Vector2d& to) {

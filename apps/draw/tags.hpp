@@ -7,15 +7,15 @@
 
 namespace motorcade {
 
-/// What is known of an object in one or two lines of text, beside what shows it.
+/// One or two lines of text about an object, placed beside its anchor.
 struct Tag {
   Color color{};
   std::string name{}, facts{};  // without facts it has one line
   Rectangle anchor{};
 };
 
-/// Puts each on a dark plate with an edge of its color, with a thread to what it belongs to where that is not near;
-/// the first ones have the best places, and none overlap. Gives the plates that found room.
+/// Puts each tag on a dark plate with an edge of its color, linked by a line to its anchor if that is not near. The
+/// first ones have the best places, and none overlap. Returns the plates that found room.
 std::vector<Rectangle> paintTags(Sheet& sheet, const std::vector<Tag>& tags);
 
 }  // namespace motorcade

@@ -14,7 +14,7 @@ using Eigen::Array2d, Eigen::Vector3d;
 struct Extent {
   Array2d least{-9, -4}, most{26, 4};
 
-  /// Makes room for a point unless it is too far off to be worth it.
+  /// Makes room for a point unless it is too far off.
   void include(const Vector3d& p_cam, double margin_m) {
     const Array2d farthest(90, 22), rearmost(-12, -22), at(p_cam.z(), p_cam.x());
     if (!at.allFinite() || (at < rearmost).any() || (at > farthest).any()) return;
@@ -43,7 +43,8 @@ Extent extentAt(const RecordedDrive& drive, std::size_t frame) {
   return extent;
 }
 
-/// The mean, over the frames beside this one, of what holds all extents beside each of them: it holds this frame's own.
+/// Mean over the frames around this one. Each term is the extent that holds all extents around its frame, and so this
+/// frame's own.
 Extent smoothExtent(const RecordedDrive& drive, std::size_t frame) {
   constexpr std::ptrdiff_t kBeside = 6;
   const auto last = static_cast<std::ptrdiff_t>(drive.T_world_cam.size()) - 1,
@@ -72,7 +73,7 @@ TopMap topMapOf(const RecordedDrive& drive, std::size_t frame, const Rectangle& 
   const Array2d span_m = extent.most - extent.least, size_px(area.width, area.height);
   TopMap map;
   map.px_per_m = std::max(1e-3, (size_px / span_m).minCoeff());
-  // Room that is left over lies rather ahead than behind, and alike on both sides.
+  // Spare room goes ahead rather than behind, and equally to both sides.
   const Array2d room_px = size_px - map.px_per_m * span_m, before_px = room_px * Array2d(kRoomBehind, 0.5);
   map.origin_px = Eigen::Vector2d(area.left, area.top) + (before_px - map.px_per_m * extent.least).matrix();
   return map;

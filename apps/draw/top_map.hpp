@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// From the camera's frame to a picture from above in which the camera heads right.
+/// Maps the camera's frame to a picture from above in which the camera heads right.
 struct TopMap {
   double px_per_m = 1;
   Eigen::Vector2d origin_px = Eigen::Vector2d::Zero();  // of the camera
@@ -19,8 +19,8 @@ struct TopMap {
   }
 };
 
-/// Shows all objects with their motion, movers of the truth that are near, and some road behind and ahead, as large as
-/// `area` allows. The scale changes slowly from frame to frame, so that moving pictures stay calm.
+/// Chooses a map that shows all objects with their motion, near movers of the truth, and some road behind and ahead, as
+/// large as `area` allows. The scale changes slowly from frame to frame, so that moving pictures stay calm.
 TopMap topMapOf(const RecordedDrive& drive, std::size_t frame, const Rectangle& area);
 
 }  // namespace motorcade

@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// What every part of the view needs.
+/// State that every part of the view needs.
 struct View {
   Sheet& sheet;
   const RecordedDrive& drive;
@@ -93,7 +93,7 @@ void drawOwnPath(const View& view) {
   view.sheet.canvas.fill(corners, {kOwn, 1});
 }
 
-/// Of the objects that are there, and, fainter, of those that were followed once.
+/// Draws the paths of the present objects and, fainter, of those followed earlier.
 void drawWays(const View& view) {
   std::set<TrackId> earlier;
   for (const auto& [at, objects] : view.drive.objects) {
@@ -135,7 +135,7 @@ void drawFootprint(const View& view, const ObjectEstimate& object, const SeenExt
     return;
   }
   canvas.outline(corners, {.color = lightened(color), .width_px = 1});
-  // The way that it heads, also when it stands.
+  // The direction that it faces, also when it stands.
   const Vector2d front = 0.5 * (corners[0] + corners[1]), side = 0.3 * (corners[1] - corners[0]);
   const Vector2d back = corners[3] - corners[0];
   if (!(back.norm() > 0)) return;
@@ -145,7 +145,7 @@ void drawFootprint(const View& view, const ObjectEstimate& object, const SeenExt
   canvas.fill(notch, {kDark, 0.55});
 }
 
-/// Of the cuboid's middle, where the run tells how sure it is of it.
+/// Draws the two-sigma ellipse of the cuboid's middle, where its covariance is known.
 void drawEllipse(const View& view, const ObjectEstimate& object) {
   constexpr double kSigmas = 2;
   const ObjectPlace place = placeOf(object);
@@ -172,7 +172,7 @@ void drawMotion(const View& view, const ObjectEstimate& object, const Vector3d& 
   view.sheet.canvas.arrow(ends[0], ends[1], {.color = trackColor(object.track), .width_px = 2.2});
 }
 
-/// Followed points, each at the distance that its disparity says.
+/// Draws followed points, each at the distance of its disparity.
 void drawPoints(const View& view) {
   for (const ObjectPoint& point : view.drive.pointsAt(view.frame)) {
     if (!(point.uvd_px.z() > 0)) continue;

@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// From above: the true ways of camera and movers, and where movers and parked cars are.
+/// Paints from above the true paths of camera and movers, and the positions of movers and parked cars.
 void paintTruth(Sheet& sheet, const RecordedDrive& drive, std::size_t frame, const TopMap& map);
 
 }  // namespace motorcade

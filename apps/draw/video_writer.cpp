@@ -35,7 +35,7 @@ constexpr auto kStep = std::chrono::milliseconds(50);
 
 bool isWebm(const fs::path& file) { return file.extension() == ".webm"; }
 
-/// Of a size with even sides, which these formats ask for.
+/// Arguments of ffmpeg. The pictures are padded to even sides, which these formats require.
 std::vector<std::string> argumentsFor(const fs::path& partial, bool webm, const VideoWriter::Format& format) {
   std::array<char, 32> rate;
   std::snprintf(rate.data(), rate.size(), "%.6f", format.rate_hz);
@@ -53,7 +53,7 @@ std::vector<std::string> argumentsFor(const fs::path& partial, bool webm, const 
   return arguments;
 }
 
-/// The first line, which says what was wrong; the others say what followed from it.
+/// The first line, which names the error; the others are its consequences.
 std::string firstLine(int descriptor) {
   std::array<char, 300> text;
   const ssize_t got = ::pread(descriptor, text.data(), text.size(), 0);
@@ -65,7 +65,7 @@ std::string endText(int status) {
   return WIFSIGNALED(status) ? "ffmpeg was ended by signal " + std::to_string(WTERMSIG(status)) : "ffmpeg failed";
 }
 
-/// What a child gets instead of what this process has.
+/// Settings of a child process that differ from this one's.
 class SpawnSettings {
  public:
   SpawnSettings() {
@@ -80,7 +80,7 @@ class SpawnSettings {
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
   void redirect(int from, int to) { posix_spawn_file_actions_adddup2(&actions_, from, to); }
-  /// A group of its own, as Ctrl-C in a terminal is for this process to handle, and no blocked signals.
+  /// Starts the child in a group of its own, as this process handles Ctrl-C in a terminal, and without blocked signals.
   void separate() {
     sigset_t none;
     sigemptyset(&none);
@@ -88,7 +88,7 @@ class SpawnSettings {
     posix_spawnattr_setpgroup(&attributes_, 0);
     posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   }
-  /// Gives an error number, 0 when all is well.
+  /// Returns an error number, 0 when all is well.
   int spawn(pid_t& process, const fs::path& program, std::vector<std::string> arguments) const {
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -138,7 +138,7 @@ VideoWriter::~VideoWriter() {
   fs::remove(partial_, ignored);
 }
 
-/// Pictures go over a socket, as writing to a pipe that ffmpeg has closed would end this process with SIGPIPE.
+/// Sends pictures over a socket. Writing to a pipe that ffmpeg has closed would end this process with SIGPIPE.
 void VideoWriter::start(const fs::path& ffmpeg, const Format& format) {
   std::array<int, 2> ends{-1, -1};
   if (words_.number() < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)

@@ -12,24 +12,24 @@
 
 namespace motorcade {
 
-/// Where the `ffmpeg` of PATH is.
+/// Path of the `ffmpeg` in PATH; empty where there is none.
 std::optional<std::filesystem::path> findFfmpeg();
 
-/// Throws UsageError unless a video can have that name: .mp4 (H.264) and .webm (VP9) can.
+/// Throws UsageError unless the name ends in .mp4 (H.264) or .webm (VP9).
 void requireVideoName(const std::filesystem::path& file);
 
-/// Hands pictures to ffmpeg, which makes a video of them: beside the file, which is replaced when all is well. Failures
-/// are OutputErrors with ffmpeg's own words.
+/// Hands pictures to ffmpeg, which makes a video of them. The video is written beside the file and replaces it in the
+/// end. Failures are OutputErrors with ffmpeg's own words.
 class VideoWriter {
  public:
   struct Format {
     ImageSize size;
     double rate_hz;
   };
-  /// Once `stop` is set, nothing is waited for any more.
+  /// Once `stop` is set, nothing waits any more.
   VideoWriter(const std::filesystem::path& file, const Format& format, const std::filesystem::path& ffmpeg,
               const std::atomic<bool>& stop);
-  /// Without `finish`, ffmpeg is ended and what it wrote is removed.
+  /// Ends ffmpeg and removes what it wrote, unless `finish` was called.
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

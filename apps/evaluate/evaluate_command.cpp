@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-/// Exports results where asked; true when that is all, as there is no truth to measure by.
+/// Exports results where asked. Returns true if that is all, as there is no truth to measure by.
 bool exportAlone(const EvaluateOptions& options) {
   if (options.export_kitti.empty()) return false;
   RunFolder run = readRunFolder(options.run);

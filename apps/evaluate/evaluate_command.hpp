@@ -4,7 +4,8 @@
 
 namespace motorcade {
 
-/// Evaluates, prints the table and writes what else was asked for; gives the exit code. Failures are UserErrors.
+/// Evaluates a run, prints the table and writes the other requested files; returns the exit code. Failures are
+/// UserErrors.
 int runEvaluate(const EvaluateOptions& options);
 
 }  // namespace motorcade

@@ -15,7 +15,7 @@
 namespace motorcade {
 namespace {
 
-/// The longest way that a message holds: of a longer one every second pose stays, then every fourth, and so on.
+/// Most poses of the path in a message. Of a longer path every second pose stays, then every fourth, and so on.
 constexpr std::size_t kMostPoses = 500;
 
 /// Each topic has a message type of its own.
@@ -51,7 +51,8 @@ void DriveMcap::write(const ExportedFrame& frame) {
   writer_.write(diagnostics_, estimate.head.stamp, diagnosticsMessage(frame));
 }
 
-/// With the first frame of each second: the whole way with every frame would grow with the square of its length.
+/// Writes the path with the first frame of each second. Writing it with every frame would grow with the square of its
+/// length.
 void DriveMcap::writePath(const FrameEstimate& estimate) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   if (frames_++ % stride_ == 0) way_.push_back(estimate.T_world_cam);

@@ -17,7 +17,7 @@ class DriveMcap {
   DriveMcap(const std::filesystem::path& file, const StereoCamera& camera);
 
   void write(const ExportedFrame& frame);
-  /// Without it the file is readable up to its last whole chunk, but has no index.
+  /// Writes the index. Without it the file is readable up to its last whole chunk.
   void close() { writer_.close(); }
 
   std::uint64_t bytes() const { return writer_.bytes(); }

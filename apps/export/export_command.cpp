@@ -22,7 +22,7 @@ void tell(const std::string& line) {
   if (tellsProgress()) std::cout << line << '\n';
 }
 
-/// A frame whose image cannot be read is written without; that is told.
+/// Adds the image of a frame. If it cannot be read, the frame is written without it, which is reported.
 void addImage(ExportedFrame& frame, const Sequence& sequence, PairReader& reader) {
   try {
     const FramePaths& paths = sequence.frames[frame.estimate.head.frame.value];

@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// All that a file for other programs tells of one frame, whether the run goes on or has ended.
+/// Content of one frame in files for other programs, during a run or after it.
 struct ExportedFrame {
   using StageTimes = std::array<FrameRow::StageTime, kStageCount>;
   struct Point {
@@ -27,10 +27,10 @@ struct ExportedFrame {
   int points_at_rest = 0, points_undecided = 0;
 };
 
-/// Of the points, those that the front-end took for points at rest or of an object in this very frame.
+/// The points that the front-end took, in this very frame, for points at rest or of an object.
 std::vector<ExportedFrame::Point> exportedPoints(const FrameMeasurements& measurements, const StereoCamera& camera);
 
-/// What each stage did of a frame, as `frames.csv` tells it.
+/// Times of the stages for a frame, as in `frames.csv`.
 ExportedFrame::StageTimes stageTimes(const FrameTiming& timing);
 
 /// One frame of a run folder, by its index in the run, without its image.

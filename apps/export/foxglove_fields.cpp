@@ -16,7 +16,7 @@ namespace {
 
 namespace pb = google::protobuf;
 
-/// What a file imports comes before it.
+/// Adds a file after the files that it imports.
 void addFile(const pb::FileDescriptor& file, std::set<std::string>& added, pb::FileDescriptorSet& files) {
   if (!added.insert(file.name()).second) return;
   for (int i = 0; i < file.dependency_count(); ++i) addFile(*file.dependency(i), added, files);

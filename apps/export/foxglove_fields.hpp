@@ -16,12 +16,12 @@ class Quaternion;
 class Vector3;
 }  // namespace foxglove
 
-/// What Foxglove's messages have in common.
+/// Fields that Foxglove's messages share.
 namespace motorcade {
 
 struct Color;
 
-/// Frames of reference. `map` is `world` set upright: x ahead, y left and z up of the first left camera; the others are
+/// Frames of reference. `map` is `world` set upright: x ahead, y left and z up of the first left camera. The others are
 /// those of the run folder, and one `object_N` per object.
 inline constexpr const char* kMapFrame = "map";
 inline constexpr const char* kWorldFrame = "world";
@@ -35,7 +35,7 @@ void set(foxglove::Quaternion* message, const Eigen::Matrix3d& rotation);
 void set(foxglove::Pose* message, const SE3& pose);
 void set(foxglove::Color* message, const Color& color, double opacity);
 
-/// The serialized FileDescriptorSet of a message type's file and of all that it imports.
+/// The serialized FileDescriptorSet of a message type's file and all its imports.
 std::string descriptorsOf(const google::protobuf::Descriptor& type);
 
 }  // namespace motorcade

@@ -20,7 +20,7 @@
 namespace motorcade {
 namespace {
 
-/// How a point lies in a point cloud, one behind the other.
+/// Layout of a point in a point cloud; points follow each other without gaps.
 struct PackedPoint {
   float x_m, y_m, z_m;
   std::int32_t track;
@@ -51,7 +51,7 @@ PackedPoint packed(const ExportedFrame::Point& point) {
           .alpha = 255};
 }
 
-/// Where the child's origin lies in its parent, and how it is turned there.
+/// Adds the position and the rotation of the child in its parent.
 void addTransform(foxglove::FrameTransforms& transforms, Timestamp stamp, const char* parent, const std::string& child,
                   const SE3& T_parent_child) {
   foxglove::FrameTransform* const transform = transforms.add_transforms();

@@ -5,7 +5,7 @@
 #include "apps/export/exported_frame.hpp"
 #include "core/stereo_camera.hpp"
 
-/// What depends on one frame alone, each as a serialized Protobuf message.
+/// Messages of a single frame, each as serialized Protobuf.
 namespace motorcade {
 
 /// foxglove.CompressedImage

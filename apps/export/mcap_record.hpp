@@ -22,7 +22,7 @@ class Fields {
   Fields& text(std::string_view value);
   /// Bytes up to the end of the record.
   Fields& bytes(std::string_view value);
-  /// From a channel's number.
+  /// A map keyed by the channels' numbers.
   Fields& map(const std::map<std::uint16_t, std::uint64_t>& value);
   Fields& map(const Texts& value);
 
@@ -34,10 +34,10 @@ class Fields {
   std::string content_;
 };
 
-/// Appends a whole record; gives its length with its head.
+/// Appends a whole record; returns its length with its header.
 std::uint64_t append(std::string& records, Opcode opcode, const Fields& fields);
 
-/// As in zlib, on top of the sum of what came before.
+/// CRC-32 as in zlib; `before` is the sum of the bytes before these.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
 }  // namespace motorcade::mcap

@@ -10,7 +10,7 @@ constexpr std::uint64_t kChunk_ns = 1'000'000'000;
 constexpr std::size_t kChunk_bytes = std::size_t{4} << 20;
 constexpr std::string_view kUncompressed;
 
-/// Of one group of records in the summary; nothing where there are none.
+/// Appends the offset of one group of records in the summary, or nothing for an empty group.
 void appendSummaryOffset(std::string& offsets, Opcode opcode, std::uint64_t start, std::uint64_t length) {
   if (length == 0) return;
   append(offsets, Opcode::kSummaryOffset, Fields().u8(static_cast<std::uint8_t>(opcode)).u64(start).u64(length));
@@ -156,7 +156,7 @@ void Writer::writeSummary() {
   addGroup(Opcode::kMetadataIndex, metadata_indexes_);
   const std::uint64_t offsets_start = start + summary.size();
   summary += offsets;
-  // The sum goes up to its own field: over the head of the footer and the two offsets too.
+  // The checksum goes up to its own field, over the footer's header and the two offsets, too.
   constexpr std::uint64_t kFooter_bytes = 20;
   Fields footer;
   footer.u8(static_cast<std::uint8_t>(Opcode::kFooter)).u64(kFooter_bytes).u64(start).u64(offsets_start);

@@ -18,8 +18,9 @@ using SchemaId = std::uint16_t;
 using ChannelId = std::uint16_t;
 
 /// Writes an MCAP file of Protobuf messages, with an index and a summary at its end. Messages gather in a chunk, which
-/// is written at once when it spans a second or four megabytes: a file that was cut off anywhere is readable up to its
-/// last whole chunk. Chunks are not compressed, as images are already. Every failure is an OutputError naming the file.
+/// is written at once when it spans a second or four megabytes. A file that was cut off anywhere is therefore readable
+/// up to its last whole chunk. Chunks are not compressed, as images are already. Every failure is an OutputError naming
+/// the file.
 class Writer {
  public:
   explicit Writer(const std::filesystem::path& file);

@@ -13,7 +13,7 @@ class Timestamp;
 class Vector3d;
 }  // namespace osi3
 
-/// Fields that OSI's messages have in common.
+/// Fields that OSI's messages share.
 namespace motorcade {
 
 void set(osi3::Timestamp* message, Timestamp stamp);
@@ -24,14 +24,15 @@ void set(osi3::Orientation3d* message, const Eigen::Vector3d& angles_rad);
 /// Position and orientation.
 void set(osi3::BaseMoving* message, const SE3& T_parent_box);
 
-/// The standard deviations that a covariance has on its diagonal.
+/// The standard deviations from a covariance's diagonal.
 Eigen::Vector3d sigmasOf(const Eigen::Matrix3d& covariance);
 
 /// Standard deviations of roll, pitch and yaw of a rotation whose perturbation on the right has this covariance; none
 /// where the x axis is vertical.
 void setAngleErrors(osi3::BaseMoving* message, const Eigen::Matrix3d& rotation, const Eigen::Matrix3d& turn_covariance);
 
-/// The rates of roll, pitch and yaw of a rotation that turns so about its own axes; none where the x axis is vertical.
+/// The rates of roll, pitch and yaw of a rotation that turns with this rate about its own axes; none where the x axis
+/// is vertical.
 void setAngleRates(osi3::BaseMoving* message, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& turn_radps);
 
 }  // namespace motorcade

@@ -35,7 +35,7 @@ void setEstimate(osi3::BaseMoving* base, const ObjectEstimate& object, const Rel
   setAngleRates(base, motion.T_sensor_box.rotation(), motion.turn_radps);
 }
 
-/// The object's velocity is as unsure along it as its speed, and across it as its heading.
+/// Covariance of the object's velocity: along it from that of the speed, across it from that of the heading.
 Eigen::Matrix3d velocityCovariance(const ObjectEstimate& object, double heading_sigma_rad) {
   const Eigen::Vector3d along = directionOf(object);
   const Eigen::Vector3d across = object.T_world_body.rotation().col(2).cross(object.velocity_world_mps);
@@ -43,7 +43,7 @@ Eigen::Matrix3d velocityCovariance(const ObjectEstimate& object, double heading_
          heading_sigma_rad * heading_sigma_rad * across * across.transpose();
 }
 
-/// The sensor's own errors are not in it: they move all objects alike.
+/// Sets the object's own errors. The sensor's errors are left out: they move all objects alike.
 void setRmse(osi3::BaseMoving* rmse, const ObjectEstimate& object, const Eigen::Matrix3d& R_sensor_world, bool moves) {
   const Eigen::Matrix3d R_sensor_box = R_sensor_world * object.T_world_body.rotation();
   const auto inSensor = [&](const Eigen::Matrix3d& covariance) {
@@ -75,13 +75,13 @@ void addVehicle(DetectedMovingObject& message, double probability, VehicleType::
   message.mutable_candidate(message.candidate_size() - 1)->mutable_vehicle_classification()->set_type(type);
 }
 
-/// A person's trunk is taken to face the way that the person walks.
+/// A person is assumed to face the walking direction.
 void addPedestrian(DetectedMovingObject& message, double probability, const osi3::Orientation3d& facing) {
   addCandidate(message, probability, MovingObject::TYPE_PEDESTRIAN);
   *message.mutable_candidate(message.candidate_size() - 1)->mutable_upper_body_pose() = facing;
 }
 
-/// The probabilities of all candidates add up to 1; what the kind leaves over is an unknown object.
+/// Adds candidates whose probabilities sum to 1: the kind, and an unknown object with the rest.
 void addCandidates(DetectedMovingObject& message, const ObjectEstimate& object) {
   const ObjectKind kind = object.cuboid ? object.cuboid->kind : ObjectKind::kUnknown;
   const double told = object.cuboid ? std::clamp(object.cuboid->kind_probability, 0.0, 1.0) : 0;

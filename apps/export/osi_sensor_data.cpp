@@ -46,7 +46,7 @@ void setMotion(osi3::BaseMoving* place, const Eigen::Matrix3d& R_world_vehicle, 
   setAngleRates(place, R_world_vehicle, w);
 }
 
-/// The host's pose is, with M = T_vehicle_sensor and the world of the first sensor,
+/// Sets the host's pose. With M = T_vehicle_sensor and the world of the first sensor it is
 ///   T_world_vehicle = M T_world_sensor M^-1,
 /// and Ad(M) carries twists and perturbations along.
 void setHost(osi3::SensorData& message, const SensedFrame& frame, const SE3& T_vehicle_sensor) {

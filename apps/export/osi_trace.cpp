@@ -53,7 +53,7 @@ std::vector<TimedPose> wayOf(const RecordedDrive& drive, const RunFolder& run) {
   return way;
 }
 
-/// Those of the estimates that are written: the final ones, or the online ones of a run that was killed.
+/// Covariances of the estimates that are written: the final ones, or the online ones of a run that was killed.
 std::map<FrameId, Matrix6d> poseCovariances(const RunFolder& run) {
   std::map<FrameId, Matrix6d> covariances;
   const auto& shown = fullerTrajectories(run).pose_covariances;

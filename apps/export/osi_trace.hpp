@@ -15,8 +15,8 @@ struct OsiTrace {
   std::uint64_t bytes = 0;
 };
 
-/// Writes an ASAM OSI trace of a run (docs/formats.md): an MCAP file with one osi3.SensorData per frame. It is the same
-/// to the byte for the same run. Throws OutputError naming the file.
+/// Writes an ASAM OSI trace of a run (docs/formats.md): an MCAP file with one osi3.SensorData per frame. The same run
+/// gives the same bytes. Throws OutputError naming the file.
 OsiTrace exportOsi(const RunFolder& run, const std::filesystem::path& file, const std::optional<SE3>& T_vehicle_sensor);
 
 }  // namespace motorcade

@@ -9,7 +9,7 @@ struct OsiVersion {
   std::uint32_t major, minor, patch;
 };
 inline constexpr OsiVersion kOsiVersion{3, 7, 0};
-/// The release whose rules for trace files are kept: the first with rules for MCAP.
+/// The release whose rules the trace files follow: the first with rules for MCAP.
 inline constexpr const char* kOsiTraceVersion = "3.8.0";
 
 }  // namespace motorcade

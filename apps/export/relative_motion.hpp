@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// An object as a sensor sees it that moves itself: derivatives are those of coordinates in the moving sensor's axes.
+/// An object as seen from a moving sensor. Derivatives are those of coordinates in the moving sensor's axes.
 struct RelativeMotion {
   SE3 T_sensor_box;  // its origin is the middle of the cuboid, or of the body without one
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
@@ -15,14 +15,14 @@ struct RelativeMotion {
   Eigen::Vector3d turn_radps = Eigen::Vector3d::Zero();  // of the box against the sensor, in the box's axes
 };
 
-/// An object's motion as a sensor sees it that moves itself. With p the center in the sensor's frame, v_o, a_o its
-/// velocity and acceleration in the world but in the sensor's axes, (v, w) the sensor's twist and (v', w') its change:
+/// An object's motion as seen from a moving sensor. p is the center in the sensor's frame. v_o, a_o are its velocity
+/// and acceleration in the world, on the sensor's axes. (v, w) is the sensor's twist and (v', w') its change:
 ///   dp/dt   = v_o - v - w x p
 ///   d2p/dt2 = a_o - w x v_o - v' - w' x p - w x dp/dt
 /// The object's pose is in the world of the sensor's, `T_sensor_world` the sensor's in that frame.
 RelativeMotion relativeMotion(const ObjectEstimate& object, const SE3& T_sensor_world, const SensorMotion& sensor);
 
-/// The direction in which the object travels, in the world: where it stands, the one it faces.
+/// The direction in which the object travels, in the world. For an object that stands it is the one that it faces.
 Eigen::Vector3d directionOf(const ObjectEstimate& object);
 
 }  // namespace motorcade

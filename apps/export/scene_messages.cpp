@@ -64,7 +64,7 @@ void addText(foxglove::SceneEntity& entity, const ObjectEstimate& object) {
                              object.speed_sigma_mps));
 }
 
-/// Through what has a `p_world` each.
+/// Adds a line through elements that have a `p_world` each.
 void addWay(foxglove::SceneEntity& entity, TrackId track, const auto& way) {
   foxglove::LinePrimitive* const line = entity.add_lines();
   line->set_type(foxglove::LinePrimitive::LINE_STRIP);

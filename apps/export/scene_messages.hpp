@@ -8,9 +8,8 @@
 
 namespace motorcade {
 
-/// Makes a foxglove.SceneUpdate of each frame's objects: an entity `object_N` in the world with cuboid, the way of its
-/// center over the last three seconds, and a label. Objects that are not in a frame any more are deleted there. Call it
-/// in frame order.
+/// Makes a foxglove.SceneUpdate of each frame's objects: an entity `object_N` in the world with its cuboid, the path of
+/// its center over the last three seconds, and a label. Objects that have left are deleted. Call it in frame order.
 class SceneMessages {
  public:
   std::string operator()(const FrameEstimate& estimate);

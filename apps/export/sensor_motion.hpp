@@ -13,15 +13,15 @@ struct TimedPose {
   SE3 T_world_sensor;
 };
 
-/// The velocity (m/s, then rad/s) of a sensor in its own axes, and how these numbers change per second.
+/// The velocity (m/s, then rad/s) of a sensor in its own axes, and its change per second.
 struct SensorMotion {
   Vector6d twist = Vector6d::Zero(), change = Vector6d::Zero();
 };
 
 /// The motion in one frame, by a quadratic least-squares fit to the poses around it: those within 0.35 s, at least
-/// the frames next to it. With xi_j = log(T_i^-1 T_j) at time t_j since frame i,
+/// those of the adjacent frames. With xi_j = log(T_i^-1 T_j) at time t_j since frame i,
 ///   xi_j = c + twist t_j + change t_j^2 / 2.
-/// Empty where fewer than three frames of the same segment are near; rejected frames, whose times may be wrong, do not
+/// Empty where fewer than three frames of the same segment are near. Rejected frames, whose times may be wrong, do not
 /// count.
 std::optional<SensorMotion> sensorMotionAt(const std::vector<TimedPose>& way, std::size_t index);
 

@@ -22,7 +22,8 @@ void writeLines(const fs::path& file, const std::vector<std::string>& lines) {
   out.close();
 }
 
-/// Of the frames with a row. A rejected one's time may repeat that of another, and no tool wants such.
+/// Lines of the good frames, and on request of the predicted ones. Rejected frames are left out: their time may repeat
+/// another's, which tools do not accept.
 std::vector<std::string> cameraLines(const RunFolder& run, const std::vector<SE3>& T_world_cam, bool with_predicted) {
   std::vector<std::string> lines;
   for (const FrameRow& row : run.frames) {

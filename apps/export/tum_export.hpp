@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// Writes a run's trajectories for tools that compare trajectories, into `folder`: `camera.tum`, and `object_NNN.tum`
-/// of each track, poses of T_world_cam and T_world_body. Rows that were predicted are left out unless they are asked
-/// for. Gives the number of objects. Throws OutputError.
+/// Writes a run's trajectories into `folder`, for tools that compare trajectories. `camera.tum` holds T_world_cam,
+/// `object_NNN.tum` of each track T_world_body. Predicted rows are left out unless they are asked for. Returns the
+/// number of objects. Throws OutputError.
 std::size_t exportTum(const RunFolder& run, const std::filesystem::path& folder, bool with_predicted);
 
 }  // namespace motorcade

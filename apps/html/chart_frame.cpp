@@ -26,7 +26,7 @@ double stepOf(const std::vector<double>& ticks) { return ticks.size() > 1 ? tick
 
 std::string coordinate(double value) { return fmt::format("{:.1f}", value); }
 
-/// A map is as high as its content asks for, within bounds, and its ranges grow to equal scales.
+/// Creates the frame. A map is as high as its content needs, within bounds, and its ranges grow to equal scales.
 ChartFrame::ChartFrame(const ChartAxes& axes, ChartRange range)
     : range_(range), is_map_(axes.equal_scales), is_wide_(axes.wide || is_map_) {
   if (is_wide_) width_ = kWideWidth;
@@ -89,7 +89,7 @@ void ChartFrame::addMark(const Eigen::Vector2d& point, std::string_view color, s
                        escaped(text));
 }
 
-/// In the line of the x axis' label, from the left; what does not fit there goes into lines below.
+/// Adds the legend to the line of the x axis' label, from the left. Entries that do not fit go to lines below.
 void ChartFrame::addLegend(const std::vector<ChartPart>& entries) {
   double x = left_, y = height_ - bottom_ + 33;
   double free_until = width_ - 150;  // the label of the axis is right of it

@@ -15,14 +15,14 @@ struct ChartRange {
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
 };
 
-/// Where things of a chart are on its sheet, and what all charts have: axes, grid, ticks, legend.
+/// Layout of a chart on its sheet, and the parts that all charts have: axes, grid, ticks, legend.
 class ChartFrame {
  public:
   ChartFrame(const ChartAxes& axes, ChartRange range);
 
-  /// From the chart's units to the sheet's.
+  /// Converts the chart's units to the sheet's.
   Eigen::Vector2d at(double x, double y) const;
-  /// The same, of a point above or below the range at its edge.
+  /// Converts likewise, but moves a point above or below the range to its edge.
   Eigen::Vector2d within(double x, double y) const;
   /// An element between axes and legend.
   void add(std::string_view svg) { body_ += svg; }
@@ -43,7 +43,7 @@ class ChartFrame {
   std::string body_;
 };
 
-/// As SVG has numbers: one digit after the point.
+/// Formats a number for SVG, with one digit after the point.
 std::string coordinate(double value);
 
 }  // namespace motorcade

@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidth = 560, kRight = 14, kTop = 28, kBottom = 40, kRow = 20, kPerCharacter = 6.6;
 constexpr std::size_t kMostCharacters = 28;
 
-/// The sheet that dots lie on. Where values are of very different sizes, and all positive, its axis is logarithmic.
+/// The sheet of a dot chart. If values are of very different sizes, and all positive, its axis is logarithmic.
 class DotSheet {
  public:
   explicit DotSheet(const std::vector<DotRow>& rows) : height_(kTop + kRow * static_cast<double>(rows.size())) {

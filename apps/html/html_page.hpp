@@ -5,16 +5,16 @@
 #include <string>
 #include <string_view>
 
-/// Parts of HTML pages that stand in one file and ask for nothing else: no script, font or picture from elsewhere.
+/// Parts of self-contained HTML pages: they load no script, font or picture from elsewhere.
 namespace motorcade {
 
-/// As text of an element or value of a quoted attribute; control characters become U+FFFD.
+/// Escapes the text of an element or the value of a quoted attribute; control characters become U+FFFD.
 std::string escaped(std::string_view text);
 
 std::string base64(std::span<const std::byte> bytes);
 std::string base64(std::string_view bytes);
 
-/// For `src` of an image; `mime` as "image/png".
+/// URI for `src` of an image; `mime` such as "image/png".
 std::string dataUri(std::string_view mime, std::string_view bytes);
 
 /// A whole page; `title` is escaped, `body` and `extra_style` (CSS rules after the base style) go in as they are.

@@ -14,7 +14,7 @@
 namespace motorcade {
 namespace {
 
-/// More points than a chart has pixels only make the page large.
+/// Most points of a line. More points than a chart has pixels only make the page large.
 constexpr std::size_t kMostPoints = 700;
 
 bool isShown(const Eigen::Vector2d& point) { return point.allFinite(); }
@@ -24,7 +24,8 @@ void widen(double& low, double& high) {
   if (high - low < 1e-9) low -= 0.5, high += 0.5;
 }
 
-/// What of a band the range of a chart makes room for: the first, unsure estimates would leave none for the others.
+/// Half width of a band for which the chart's range makes room. The first, unsure estimates would leave no room for
+/// others.
 double roomFor(const ChartLine& line) {
   constexpr double kTimesMedian = 3;
   std::vector<double> half = line.half_width;
@@ -59,7 +60,7 @@ ChartRange rangeOf(const ChartAxes& axes, const std::vector<ChartLine>& lines) {
   return range;
 }
 
-/// The pieces of a line between its breaks; of each every n-th point, and the last.
+/// The pieces of a line between its breaks; every n-th point of each, and the last.
 std::vector<std::vector<std::size_t>> piecesOf(const ChartLine& line) {
   const std::size_t step = std::max<std::size_t>(1, (line.points.size() + kMostPoints - 1) / kMostPoints);
   std::vector<std::vector<std::size_t>> pieces;
@@ -93,7 +94,7 @@ std::string pathOf(const ChartFrame& frame, const ChartLine& line) {
   return path;
 }
 
-/// Each piece up along the upper edge and back along the lower one.
+/// Draws each piece of the band: along its upper edge, and back along the lower one.
 std::string bandOf(const ChartFrame& frame, const ChartLine& line) {
   std::string band;
   for (const auto& piece : piecesOf(line)) {

@@ -9,9 +9,9 @@
 /// Charts as SVG inside of a page: they follow its colors, scale with it and print.
 namespace motorcade {
 
-/// What a page with charts has after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
-/// var(--truth) and var(--wait), beside those of the page; var(--strength) is how much of a color for dark ground is
-/// left on the page's own.
+/// Style of a page with charts, added after its base style. Colors are var(--line1 | --line2), var(--s1) to var(--s7),
+/// var(--truth) and var(--wait), beside those of the page. var(--strength) is the share of a color made for dark ground
+/// that is used on the page's own ground.
 extern const std::string_view kChartStyle;
 
 /// A line of a chart. Where a point is not finite, the line is broken.
@@ -48,13 +48,13 @@ struct ChartPart {
 /// Bars whose parts stand on one another.
 std::string barChart(const ChartAxes& axes, const std::vector<ChartPart>& parts, const std::vector<ChartBar>& bars);
 
-/// A chart with what it shows.
+/// A chart with a caption.
 std::string chartFigure(const std::string& svg, const std::string& caption);
 
 /// A point at which a line is broken.
 Eigen::Vector2d lineBreak();
 
-/// Round numbers from `low` to `high` that a scale may show, about `wanted` of them.
+/// Round numbers from `low` to `high` for a scale, about `wanted` of them.
 std::vector<double> ticksBetween(double low, double high, int wanted);
 
 }  // namespace motorcade

@@ -94,7 +94,8 @@ void FaultInjector::applyTo(StereoFrame& frame, const Fault& fault, std::uint64_
   }
 }
 
-/// The oldest one while there are fewer; its own while there is none.
+/// Replaces the right image by that of an earlier pair, or by the oldest while there are fewer. It stays while there is
+/// none.
 void FaultInjector::takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const {
   if (rights_taken_.empty()) return;
   const Image& right = rights_taken_[std::min(rights_taken_.size(), pairs_before) - 1];

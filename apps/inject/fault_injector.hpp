@@ -17,11 +17,11 @@
 
 namespace motorcade {
 
-/// Stands between a sequence and whoever follows it, and lets happen what a specification asks for. Results depend on
-/// the specification and its seed alone. Call it in the order of frames, from one thread.
+/// Stands between a sequence and its reader, and injects the faults of a specification. Results depend on the
+/// specification and its seed alone. Call it in the order of frames, from one thread.
 class FaultInjector {
  public:
-  /// Where pairs go on to.
+  /// The receiver of pairs.
   struct Outlet {
     std::function<bool(StereoFrame)> push;              // false when no further pair is wanted
     std::function<void(FrameId, Timestamp)> pass_over;  // this pair does not come, or not in its turn
@@ -30,9 +30,9 @@ class FaultInjector {
   /// `sequence` must outlive it: faults of files read them again.
   FaultInjector(FaultSpec spec, const Sequence& sequence);
 
-  /// Gives a pair on, changed, later or not at all; false when no further pair is wanted.
+  /// Passes a pair on: changed, later or not at all. Returns false when no further pair is wanted.
   bool give(StereoFrame frame, const Outlet& outlet);
-  /// After the last pair: gives on those that are still late.
+  /// Passes on the pairs that are still late; call it after the last pair.
   bool finish(const Outlet& outlet);
   /// The frame's time with all jumps so far.
   Timestamp shifted(Timestamp stamp) const { return {stamp.ns + jumps_ns_}; }
@@ -49,7 +49,7 @@ class FaultInjector {
   };
   void applyTo(Image& image, const ImageOf& of, const Fault& fault, std::uint64_t seed);
   void takeEarlierRight(StereoFrame& frame, std::size_t pairs_before) const;
-  /// The image of its file, whose bytes are damaged before; streams have none.
+  /// Reads the image of a file, whose bytes are damaged first; streams have none.
   Image readAgain(const ImageOf& of, const std::function<std::string(std::string)>& damage);
   bool giveLate(std::int64_t frame, const Outlet& outlet);
 

@@ -12,7 +12,7 @@
 namespace motorcade {
 namespace {
 
-/// How a kind is written and what values it takes; a kind without a value has an empty range.
+/// Name and range of values of a kind; a kind without a value has an empty range.
 struct KindEntry {
   FaultKind kind;
   std::string_view name;
@@ -52,7 +52,7 @@ constexpr std::array kKinds{
   throw UsageError("--inject " + std::string(part) + ": " + why);
 }
 
-/// What follows the last `mark` in `text`, which is cut off there; empty when the mark is not in it.
+/// Returns the text after the last `mark` and cuts `text` there. Empty when the mark is not in it.
 std::optional<std::string_view> cutAt(std::string_view& text, char mark) {
   const auto at = text.rfind(mark);
   if (at == std::string_view::npos) return std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace motorcade {
 
-/// What can go wrong between a camera and the pipeline.
+/// Faults between a camera and the pipeline.
 enum class FaultKind {
   kDrop,       // the pair never comes
   kDuplicate,  // it has the images of the pair before
@@ -39,7 +39,7 @@ enum class FaultKind {
 
 enum class FaultSide { kBoth, kLeft, kRight };
 
-/// One fault, and the frames that it strikes.
+/// One fault, and the frames that it affects.
 struct Fault {
   FaultKind kind = FaultKind::kDrop;
   double value = 0;  // see FaultKind; kinds without a value ignore it
@@ -55,17 +55,17 @@ struct FaultSpec {
 };
 
 /// Reads faults, separated by commas: KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE], or seed=N. Frames are numbered
-/// as in the sequence, all of them where none are named. `late` is also called `reordered` where the value is 1.
-/// Example: `black@20:23,noise=20~0.1,blur=9/right@::2`. Throws UsageError that names the part.
+/// as in the sequence; a fault without frames affects all of them. `late` is also called `reordered` where the value is
+/// 1. Example: `black@20:23,noise=20~0.1,blur=9/right@::2`. Throws UsageError that names the part.
 FaultSpec parseFaultSpec(std::string_view text);
 
 /// A line per kind: its name, value and meaning, for `--help` and messages.
 std::string faultHelp();
 
-/// Does the fault strike this frame? The same answer for the same seed.
+/// True if the fault affects this frame. The answer depends only on the arguments.
 bool strikes(const Fault& fault, std::size_t index_of_fault, FrameId frame, std::uint64_t seed);
 
-/// A seed for what is random in a fault at a frame.
+/// A seed for the random part of a fault in a frame.
 std::uint64_t seedOf(std::uint64_t seed, std::size_t index_of_fault, FrameId frame);
 
 }  // namespace motorcade

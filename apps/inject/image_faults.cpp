@@ -14,7 +14,7 @@ namespace {
 
 std::uint8_t toGray(double value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
 
-/// Each pixel of a new image by a function of its place.
+/// Makes a new image; a function of the position gives each pixel.
 template <class Gray>
 Image imageOf(const Image& like, ImagePool& pool, const Gray& gray) {
   Image image = pool.acquire(like.width(), like.height());
@@ -40,7 +40,7 @@ std::vector<double> runningMeans(const std::vector<double>& values, int reach) {
   return means;
 }
 
-/// Gray level between the pixels; the border's are repeated.
+/// Gray level between the pixels; pixels of the border are repeated.
 double sampled(const Image& image, double x, double y) {
   x = std::clamp(x, 0.0, image.width() - 1.0);
   y = std::clamp(y, 0.0, image.height() - 1.0);
@@ -51,7 +51,7 @@ double sampled(const Image& image, double x, double y) {
          v * ((1 - u) * image.at(left, top + 1) + u * image.at(left + 1, top + 1));
 }
 
-/// An image about whose middle `source(x, y)` tells where each pixel's content comes from.
+/// Warps an image; `source(x, y)`, relative to the middle, is the source position of each pixel.
 template <class Source>
 Image moved(const Image& image, ImagePool& pool, const Source& source) {
   const double middle_x = (image.width() - 1) / 2.0, middle_y = (image.height() - 1) / 2.0;

@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// A call that C++ does not know: with a NULL handle, or a struct of no known size.
+/// A call that is impossible in C++: with a NULL handle, or a struct of an unknown size.
 class CallError : public Error {
  public:
   CallError(motorcade_code code, std::string field, const std::string& message)
@@ -20,10 +20,10 @@ class CallError : public Error {
   motorcade_code code_;
 };
 
-/// Keeps the texts for `motorcade_last_error`, cut to its room: it asks nothing of the heap, which may be used up.
+/// Keeps the texts for `motorcade_last_error`, cut to its buffer. It takes nothing from the heap, which may be used up.
 motorcade_code failed(motorcade_code code, const char* field, const char* message) noexcept;
 
-/// Makes a call of the C interface, past which no exception gets.
+/// Makes a call of the C interface and catches every exception.
 template <class Call>
 motorcade_code guarded(const Call& call) noexcept {
   try {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostCpus = 1024;  // as many as sched_setaffinity counts
 
-/// The values of both languages count alike. A caller's enum may hold any number, and so is read as one.
+/// Converts an enum; both languages number the values alike. A caller's enum may hold any number, and so is read as
+/// one.
 template <class To, class From>
 To valueOf(const From& given, To last, const char* field) {
   static_assert(sizeof(From) == sizeof(int));
@@ -45,7 +46,7 @@ Camera::Rig rigOf(const motorcade_rig* given) {
   return converted;
 }
 
-/// A size that cannot be is refused later: no mask of it is read.
+/// Reads the ignored pixels. An impossible size is refused later: no mask of that size is read.
 Camera::Ignored ignoredOf(const motorcade_camera& camera) {
   Camera::Ignored ignored{.left_px = camera.ignored_left_px,
                           .top_px = camera.ignored_top_px,
@@ -57,7 +58,7 @@ Camera::Ignored ignoredOf(const motorcade_camera& camera) {
   return ignored;
 }
 
-/// Without pixels where there is no image.
+/// Converts an image; the result has no pixels when none is given.
 Pair::Image imageOf(const motorcade_image* given, const char* name, const char* format_name) {
   if (given == nullptr) return {};
   const motorcade_image image = readStruct(given, name, {});

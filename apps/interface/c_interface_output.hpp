@@ -9,7 +9,7 @@ struct motorcade_result {  // NOLINT(readability-identifier-naming): a name of t
 
 namespace motorcade {
 
-/// What the caller gets, in C. Texts and masks stay those of what is given.
+/// Converts results to C. Texts and masks remain those of the argument.
 motorcade_frame frameOf(const Result& result);
 motorcade_object objectOf(const Result::Object& object);
 motorcade_mask maskOf(const Result::Mask& mask);

@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// The smallest struct that is taken: what it must have ends there. Members after it may be missing in an older
-/// program's struct.
+/// The smallest struct that is accepted: it ends behind the members that it must have. Members after them may be
+/// missing in an older program's struct.
 template <class Struct>
 inline constexpr std::size_t kLeast_bytes = sizeof(std::size_t) + 1;
 template <>
@@ -33,7 +33,7 @@ inline void require(const void* pointer, const char* name) {
   if (pointer == nullptr) throw CallError(MOTORCADE_ERROR_NULL, name, "is NULL; it must point to what its name says");
 }
 
-/// A size beyond is taken for memory that was never set.
+/// Largest size of a struct. A larger number is taken for memory that was never set.
 inline constexpr std::size_t kMost_bytes = 4096;
 
 template <class Struct>
@@ -45,7 +45,7 @@ void requireStruct(const Struct* given, const char* name) {
                       std::to_string(sizeof(Struct)) + ", before the call");
 }
 
-/// How much of the caller's struct this version knows, which may be all.
+/// Bytes of the caller's struct that this version knows, which may be all.
 template <class Struct>
 std::size_t knownBytes(const Struct* given) {
   return std::min(sizeof(Struct), given->struct_size);
@@ -66,14 +66,14 @@ Struct readStruct(const Struct* given, const char* name, Struct defaults) {
   return defaults;
 }
 
-/// Fills in as many members as the caller's struct has; `requireStruct` comes first. Its size stays.
+/// Fills in as many members as the caller's struct has. Call `requireStruct` first. Its size stays.
 template <class Struct>
 void writeStruct(Struct values, Struct* asked) {
   values.struct_size = asked->struct_size;
   std::memcpy(asked, &values, knownBytes(asked));
 }
 
-/// Fills in the defaults, those of a newer program's struct being zero here.
+/// Fills in the defaults; additional members of a newer program's struct become zero.
 template <class Struct>
 motorcade_code initStruct(Struct* asked, const char* name, const Struct& defaults) {
   return guarded([&] {

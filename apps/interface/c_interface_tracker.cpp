@@ -15,7 +15,7 @@ struct motorcade_tracker {  // NOLINT(readability-identifier-naming): a name of 
 namespace motorcade {
 namespace {
 
-/// Hands out what `next` gives. The handle is made before, so that no result is lost where memory is.
+/// Returns the result of `next`. The handle is created first, so that no result is lost if memory runs out.
 template <class Next>
 motorcade_code give(motorcade_tracker* from, motorcade_result** result, const Next& next) {
   return guarded([&] {

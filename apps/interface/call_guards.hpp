@@ -20,7 +20,7 @@ class OneAtATime {
   bool entered_;
 };
 
-/// A call that is under way: the tracker outlives it.
+/// A call that is under way. The tracker outlives it.
 class Visit {
  public:
   explicit Visit(std::atomic<int>& visits) : visits_(visits) { ++visits_; }

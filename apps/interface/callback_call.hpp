@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// Makes a call of a callback for `what`. What it throws is logged, and the next call is made all the same.
+/// Calls a callback for `what`. Its exceptions are logged and do not prevent the next call.
 template <class Call>
 void callLogged(const LogCallback& log, const char* what, const Call& call) {
   const auto complain = [&](const char* why) {

@@ -60,7 +60,7 @@ PixelMask ignoredOf(const Camera& camera) {
   return ignored;
 }
 
-/// Of one lens, or of the rectified pair.
+/// Checks the intrinsics of one lens or of the rectified pair.
 template <class Intrinsics>
 void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Camera& camera) {
   constexpr double kMostFocal_px = 1e6;
@@ -78,7 +78,7 @@ void requireIntrinsics(const std::string& name, const Intrinsics& lens, const Ca
   inside(".cy_px", lens.cy_px, camera.height_px);
 }
 
-/// The model, and how many coefficients it has.
+/// The distortion model, and the number of its coefficients.
 std::pair<Distortion, std::ptrdiff_t> distortionOf(const std::string& name, Camera::Distortion distortion) {
   switch (distortion) {
     case Camera::Distortion::kNone:

@@ -11,19 +11,19 @@
 
 namespace motorcade {
 
-/// May images that are pushed have this size?
+/// True when pushed images may have this size.
 bool isImageSize(int width_px, int height_px);
 
-/// A caller's camera as the stages need it: that of the rectified pair, and how its images become such.
+/// A caller's camera as the stages need it: that of the rectified pair, and the rectification of its images.
 class CameraModel {
  public:
   /// Throws Error naming the field.
   explicit CameraModel(const Camera& camera);
 
   const StereoCamera& rectified() const { return rectified_; }
-  /// The pixels of the rectified left image that are of no use.
+  /// The pixels of the rectified left image that are ignored.
   const FrameInputs& inputs() const { return inputs_; }
-  /// From what was pushed, as gray, to what the stages take.
+  /// Rectifies a pushed image, converted to gray, for the stages.
   Image leftOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->left(gray, pool) : gray; }
   Image rightOf(const Image& gray, ImagePool& pool) const { return remaps_ ? remaps_->right(gray, pool) : gray; }
 
@@ -36,10 +36,10 @@ class CameraModel {
   std::optional<Remaps> remaps_;
 };
 
-/// The exactness of the calibration, where the caller tells it. Throws Error naming the field.
+/// The accuracy of the calibration, where the caller gives it. Throws Error naming the field.
 std::optional<CalibrationSigmas> sigmasOf(const Camera& camera);
 
-/// The other way round, of a pair that is rectified.
+/// Converts a rectified pair's camera to the public interface.
 Camera cameraOf(const StereoCamera& camera, const std::optional<CalibrationSigmas>& sigmas);
 
 }  // namespace motorcade

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// The callback is called on this thread while this lives, which alone holds alive whatever is to be called.
+/// Marks this thread, as long as it lives, as the one that calls the callback. It keeps the callback alive.
 class FinalTaker::Handing {
  public:
   explicit Handing(FinalTaker& of) : of_(of) {

@@ -10,13 +10,14 @@
 
 namespace motorcade {
 
-/// The callback for finals, and the one thread that calls it. Keeps none: the thread waits until the callback returns.
+/// The callback for finals, and the one thread that calls it. No final is queued: the thread waits until the callback
+/// returns.
 class FinalTaker {
  public:
   using Taker = std::function<void(Result)>;
 
-  /// Any thread: from now on finals go to this callback, or where it is empty to nobody. The callback before has
-  /// returned by then, unless it is the caller.
+  /// Directs finals to this callback, or to nobody if it is empty; for any thread. On return the previous callback has
+  /// returned, unless it is the caller.
   void handTo(Taker taker);
   bool isThere() const;
   /// The thread that calls it. Throws what the callback throws.

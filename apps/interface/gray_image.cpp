@@ -67,7 +67,7 @@ int brightestOf(const Pair::Image& image) {
 
 }  // namespace
 
-/// Samples that eight bits hold may be those of a dark pair of a camera with more: a later pair will tell.
+/// Samples that eight bits hold may be those of a dark pair of a camera with more bits: a later pair will tell.
 int SampleBits::of(const Pair& pair) {
   constexpr int kDark = 8;
   if (pair.left.format != Pair::Format::kGray16 && pair.right.format != Pair::Format::kGray16) return kAllSampleBits;

@@ -10,17 +10,17 @@
 
 namespace motorcade {
 
-/// The longest stride that is taken: a longer one is a mistake.
+/// The longest stride that is accepted: a longer one is a mistake.
 inline constexpr std::ptrdiff_t kMostStride_bytes = 1 << 24;
 
-/// Bytes from row to row, where the caller says nothing, too.
+/// Bytes from row to row, also where the caller gives none.
 std::ptrdiff_t strideOf(const Pair::Image& image);
 
-/// Why an image cannot be one of this camera; null when it can.
+/// Reason why an image cannot be one of this camera; null when it can.
 const char* problemOf(const Pair::Image& image, const Camera& camera);
 
-/// Finds out how many bits the samples of images of 16 bits use, as cameras have ten, twelve or fourteen. Call for each
-/// pair in turn: what a pair that is not dark tells holds for all that follow.
+/// Finds the number of bits that 16-bit samples use, as cameras have ten, twelve or fourteen. Call it for each pair in
+/// turn. The first pair that is not dark decides for all that follow.
 class SampleBits {
  public:
   /// The bits of this pair's samples, the same for both images. The pair has no problem.
@@ -34,8 +34,8 @@ class SampleBits {
   bool told_ = false;            // the delivering thread's
 };
 
-/// The image as 8-bit gray in a buffer of the pool: the one copy between the caller and the stages. Of samples of 16
-/// bits the upper eight of `sample_bits` are used.
+/// The image as 8-bit gray in a buffer of the pool: the one copy between the caller and the stages. Of 16-bit samples
+/// the upper eight of `sample_bits` are used.
 Image grayImage(const Pair::Image& image, int sample_bits, ImagePool& pool);
 
 }  // namespace motorcade

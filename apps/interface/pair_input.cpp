@@ -13,9 +13,9 @@
 namespace motorcade {
 namespace {
 
-/// Puts as many buffers into the pool as images are ever in use at once, in flight, in the entrance and in the stages'
-/// memories, and some to spare: a pool may miss one that comes back in that moment. Their pages are untouched, and so
-/// cost no memory until they are used.
+/// Puts as many buffers into the pool as images are ever in use at once: in flight, in the entrance and in the stages'
+/// memories. Some are spare, as a pool may miss a buffer that comes back in that moment. Their pages are untouched, and
+/// so cost no memory until they are used.
 void stock(ImagePool& pool, const Camera& camera) {
   constexpr std::size_t kImages = 32;
   std::vector<Image> images;
@@ -81,7 +81,8 @@ std::shared_ptr<const InstanceLabels> PairInput::labelsOf(const Pair::Image& giv
   return labels;
 }
 
-/// Room for as many as pairs are ever in use at once, and some to spare. Most callers have no labels, and pay nothing.
+/// Makes room for the labels of all pairs that are ever in use at once, and some spare. Most callers have no labels,
+/// and pay nothing.
 void PairInput::stockLabels() {
   constexpr std::size_t kPairs = 16;
   std::vector<std::shared_ptr<InstanceLabels>> all;

@@ -12,7 +12,7 @@
 namespace motorcade {
 
 /// Makes a frame of a caller's pair: checks it, copies its pixels once into pooled memory, and rectifies it. One thread
-/// hands pairs in. Under the live policy it asks nothing of the heap, but for the labels' room with the first ones.
+/// hands pairs in. Under the live policy it does not allocate, but for the labels' room with the first ones.
 class PairInput {
  public:
   /// `model` is of the camera, and outlives it.

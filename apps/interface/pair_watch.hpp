@@ -11,15 +11,15 @@
 
 namespace motorcade {
 
-/// Looks at a tracker's pairs when their results are out, so that no result waits for it, and logs what is wrong with
-/// the rig or becomes so.
+/// Looks at a tracker's pairs when their results are out, so that no result waits for it. It logs faults of the rig and
+/// changes of it.
 class PairWatch {
  public:
   PairWatch(const StereoCamera& camera, LogCallback log) : watch_(camera), log_(std::move(log)) {}
 
-  /// The same stages, which leave each pair here on its way. The watch outlives them.
+  /// The same stages, but they also leave each pair here. The watch outlives them.
   Stages watched(Stages stages);
-  /// Looks at the pairs up to that of this frame. From one thread, in the order of the frames.
+  /// Looks at the pairs up to that of this frame. Called by one thread, in the order of the frames.
   void look(FrameId frame);
   /// Reason why results are worthless now; empty if they are not. Call it on the thread that looks.
   const std::string& problem() const { return problem_; }

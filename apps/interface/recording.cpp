@@ -25,7 +25,7 @@ class Recording::Impl {
   Image left_, right_;  // of the pair that was read last
 };
 
-/// Without pixels where the file cannot be read.
+/// Views an image of a pair; it has no pixels when its file cannot be read.
 Pair::Image Recording::Impl::view(Image& image, std::size_t index, StereoSide side) {
   image = Image();
   try {

@@ -28,7 +28,7 @@ std::array<double, 12> rowsOf(const SE3& T) {
 
 std::array<double, 3> arrayOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// With perturbations (rho, phi) in the axes that R leads to.
+/// Rotates a covariance: its perturbations (rho, phi) are then in the axes to which R leads.
 Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
   Matrix6d J = Matrix6d::Zero();
   J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = R;
@@ -108,7 +108,8 @@ Eigen::Matrix3d axesFrom(Tracker::Axes axes) {
   return R;
 }
 
-/// Of a frame that the odometry passes over, the next one's motion is not since then.
+/// True unless the odometry passed over the frame. The next frame's motion does not start at a frame that was passed
+/// over.
 bool wasLookedAt(const FrameMeasurements& measured) {
   return measured.head.cause != FrameCause::kNothingFound && measured.head.cause != FrameCause::kUnusable;
 }
@@ -169,8 +170,8 @@ void ResultConversion::setObjects(const PipelineResult& result, Result& converte
   }
 }
 
-/// A motion is measured since the last frame that was looked at; one that is predicted is so since the frame before. In
-/// the first frame nothing is known of it.
+/// Sets the camera's velocity. A measured motion begins at the last frame that was looked at, a predicted one at the
+/// previous frame. In the first frame the velocity is unknown.
 void ResultConversion::setVelocity(const FrameMeasurements& measured, Result& converted) {
   const bool seen = wasLookedAt(measured);
   const std::optional<Timestamp> since = seen ? seen_ : before_;

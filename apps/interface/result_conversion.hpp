@@ -10,16 +10,17 @@
 
 namespace motorcade {
 
-/// Turns the pipeline's results into the caller's, in the axes that were chosen. Takes them in order: it remembers
-/// since when a motion is measured.
+/// Turns the pipeline's results into the caller's, in the chosen axes. Takes them in order: it remembers the frame at
+/// which a motion begins.
 class ResultConversion {
  public:
   ResultConversion(Tracker::Axes axes, bool masks);
-  /// A result for which there is no memory tells so, without objects.
+  /// Converts a result. Where memory runs out, the result says so and has no objects.
   Result operator()(const PipelineResult& result);
-  /// A frame that has left the smoothing window: without velocity, masks and latency. May throw std::bad_alloc.
+  /// Converts a frame that has left the smoothing window: without velocity, masks and latency. May throw
+  /// std::bad_alloc.
   Result final(const FrameEstimate& estimate);
-  /// Ids that no object of a drive before has.
+  /// Starts ids that no object of an earlier drive has.
   void startIdsAt(std::int64_t first_id) { first_id_ = next_id_ = first_id; }
   std::int64_t nextId() const { return next_id_; }
 

@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// Of a time that a clock can count to.
+/// Clamps a duration to a year, which any clock can count.
 std::chrono::milliseconds bounded(std::chrono::milliseconds time) {
   constexpr std::chrono::milliseconds kYear = std::chrono::hours(24 * 365);
   return std::clamp(time, std::chrono::milliseconds(0), kYear);
@@ -124,7 +124,7 @@ void ResultQueue::handTo(Taker taker) {
   lock.unlock();  // the callback before may do what it likes when it is destroyed
 }
 
-/// While it lives, a callback is called on this thread.
+/// Marks this thread, as long as it lives, as the one that calls a callback.
 class ResultQueue::Handing {
  public:
   Handing(ResultQueue& queue, std::shared_ptr<const Taker> taker) : queue_(queue), taker_(std::move(taker)) {

@@ -14,9 +14,9 @@
 
 namespace motorcade {
 
-/// Results between a tracker and whoever takes them: by `poll` and `wait`, or through a callback. Bounded: in live the
-/// oldest gives way, or with a callback the tracker waits for it; in replay the producer of pairs waits
-/// (`waitForRoom`). Each member is for any thread.
+/// Results between a tracker and their consumer, who takes them by `poll` and `wait`, or through a callback. The queue
+/// is bounded. In live the oldest result is dropped, or with a callback the tracker waits for it. In replay the
+/// producer of pairs waits (`waitForRoom`). Each member is for any thread.
 class ResultQueue {
  public:
   static constexpr std::size_t kMost = 256;
@@ -26,32 +26,33 @@ class ResultQueue {
 
   /// Tracker: a result.
   void put(Result result);
-  /// Tracker: none comes after those that are there.
+  /// Tracker: no further result comes.
   void close();
-  /// Nobody takes results any more: ends every wait.
+  /// Ends every wait, as nobody takes results any more.
   void abandon();
-  /// Results that wait, and those that still come, are untaken, and no `put` waits, until it is as new.
+  /// Counts waiting and further results as untaken, and lets no `put` wait, until `restart`.
   void discard();
-  /// The queue is as new, but for its counts and its callback.
+  /// Makes the queue as new, but for its counts and its callback.
   void restart();
 
-  /// Producer of pairs: one more is under way; waits until less than `kMost` results are or wait, false when nobody
-  /// took one in time. Does not wait after `endWaitsForRoom`.
+  /// Producer of pairs: registers one more pair. Waits until fewer than `kMost` results are under way or waiting; false
+  /// when nobody took one in time. Does not wait after `endWaitsForRoom`.
   bool waitForRoom(std::chrono::milliseconds patience);
   void endWaitsForRoom();
-  /// Of that pair no result comes.
+  /// Gives the room back when no result of the pair comes.
   void giveUpRoom();
 
   std::optional<Result> poll();
-  /// Also empty, and at once, when there is a callback.
+  /// Waits for a result. Returns empty at once when there is a callback.
   std::optional<Result> wait(std::chrono::milliseconds timeout);
-  /// No result comes any more, and the callback has returned from the last one.
+  /// True when no further result comes, and the callback has returned from the last one.
   bool done() const;
 
-  /// From now on results, those that wait first, go to the callback, or where it is empty to `poll` and `wait` again.
-  /// The callback before has returned by then, unless it is the caller.
+  /// Directs results, those that wait first, to the callback, or with an empty one back to `poll` and `wait`. On return
+  /// the previous callback has returned, unless it is the caller.
   void handTo(Taker taker);
-  /// The thread that calls callbacks: waits for a result and hands it on; false when nobody takes any more.
+  /// The thread that calls callbacks: waits for a result and hands it to the callback. False when nobody takes results
+  /// any more.
   bool handNext();
 
   std::int64_t given() const;

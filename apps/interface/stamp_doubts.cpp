@@ -23,7 +23,7 @@ const char* reasonOf(Admission admission) {
   return "";
 }
 
-/// Every second one of pairs that are far apart is accepted.
+/// Every second pair is accepted when pairs are far apart.
 std::optional<std::string> StampDoubts::refused(Admission admission, std::int64_t stamp_ns) {
   constexpr int kRefused = 2, kSeveral = 3 * kRefused;
   if (admission != Admission::kTooClose && admission != Admission::kFarAhead) return std::nullopt;

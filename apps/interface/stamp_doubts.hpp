@@ -8,11 +8,11 @@
 
 namespace motorcade {
 
-/// Why a pair was not taken; static text. Empty where the reason is not the pair's.
+/// Reason why a pair was not taken; static text. Empty where the reason is not the pair's.
 const char* reasonOf(Admission admission);
 
-/// Notices that stamps seem to have another unit: several pairs in a row are too close together, or far apart. The
-/// pushing thread's.
+/// Notices stamps that seem to have another unit: several pairs in a row are too close together, or far apart. Used by
+/// the pushing thread only.
 class StampDoubts {
  public:
   /// A sentence about a pair that was not taken, once.

@@ -70,7 +70,7 @@ std::int64_t TrackedDrive::end() {
   return convert_.nextId();
 }
 
-/// Those who wait for results of a drive that is abandoned wait for those of the next one.
+/// Delivers the results. When the drive is abandoned, waits for its results go on for those of the next drive.
 void TrackedDrive::deliver() {
   try {
     const PlacedThread placed(around_.config.pipeline.placement);
@@ -110,7 +110,7 @@ void TrackedDrive::deliverFinals(const std::vector<FrameEstimate>& finals) {
       callLogged(around_.log, "finals", [&] { around_.finals.give(convert_.final(final)); });
 }
 
-/// Waits for a push that is under way, which a pipeline that ends must not meet; those that come later find it closed.
+/// Waits for a push that is under way, as a pipeline must not end during it. Later pushes find it closed.
 std::vector<FrameEstimate> TrackedDrive::lastFinals() {
   constexpr std::chrono::microseconds kPause(100);
   while (!abandoned_) {

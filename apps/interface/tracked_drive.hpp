@@ -22,7 +22,7 @@
 namespace motorcade {
 
 /// One drive of a tracker: all that is forgotten when the tracker is reset. A thread of its own takes the pipeline's
-/// results, converts them for those who take them, and calls the callback for finals.
+/// results, converts and delivers them, and calls the callback for finals.
 class TrackedDrive {
  public:
   /// The parts that it shares with the tracker, which outlives it.
@@ -40,20 +40,20 @@ class TrackedDrive {
   TrackedDrive(const TrackedDrive&) = delete;
   TrackedDrive& operator=(const TrackedDrive&) = delete;
 
-  /// From now on results are delivered. Its objects have ids from `first_id` on.
+  /// Starts to deliver results. Its objects have ids from `first_id` on.
   void start(std::int64_t first_id);
 
-  /// The pushing thread: the bits of this pair's samples.
+  /// The bits of this pair's samples; called by the pushing thread.
   int sampleBitsOf(const Pair& pair) { return sample_bits_.of(pair); }
   /// The pushing thread.
   Tracker::Push push(StereoFrame frame);
   Tracker::Push pushMotion(const VehicleMotion& motion) noexcept;
   void close();
-  /// Nothing is delivered any more, and every wait ends.
+  /// Stops delivery and ends every wait.
   void abandon();
-  /// Is this the thread that delivers, as within a callback for finals?
+  /// True on the thread that delivers, as within a callback for finals.
   bool delivers() const { return std::this_thread::get_id() == deliverer_.get_id(); }
-  /// Waits until the thread that delivers has ended. The first id that no object has, of this drive or one before.
+  /// Waits until the delivering thread has ended. Returns the first id that no object of this or an earlier drive has.
   std::int64_t end();
 
  private:

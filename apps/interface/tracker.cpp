@@ -30,8 +30,8 @@ using PushStatus = Tracker::Push::Status;
 
 }  // namespace
 
-/// Pairs go through checks, one copy and the rectification into the drive's pipeline, and its results to those who take
-/// them; a thread calls the callback for results where there is one.
+/// Checks pairs, copies them once, rectifies them and hands them to the drive's pipeline, which delivers its results.
+/// With a callback for results, a thread calls it.
 class Tracker::Impl {
  public:
   Impl(const Camera& camera, const Options& options, const PipelineConfig& config);
@@ -44,7 +44,7 @@ class Tracker::Impl {
   std::optional<Result> poll();
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const { return results_.done(); }
-  /// Does this process have the tracker's memory, by `fork`, but none of its threads?
+  /// True in a child of `fork`, which has the tracker's memory, but none of its threads.
   bool inherited() const { return ::getpid() != process_; }
   void requireOwn() const;
   void handTo(std::function<void(Result)> take);
@@ -80,7 +80,7 @@ class Tracker::Impl {
   std::jthread caller_;  // of callbacks
 };
 
-/// The drive's thread starts at last: it would wait for results if anything failed after it.
+/// The drive's thread starts last: it would wait for results if anything failed after it.
 Tracker::Impl::Impl(const Camera& camera, const Options& options, const PipelineConfig& config)
     : model_(camera),
       config_(config),
@@ -100,14 +100,14 @@ std::unique_ptr<TrackedDrive> Tracker::Impl::newDrive() {
   return std::make_unique<TrackedDrive>(around, ResultConversion(axes_, masks_));
 }
 
-/// Throws where a lock may be held by a thread that is not there.
+/// Throws in a process where a lock may be held by a thread that does not exist there.
 void Tracker::Impl::requireOwn() const {
   if (inherited())
     throw Error("tracker", "was made by process " + std::to_string(process_) +
                                ", of which this one is a child; make one after the fork");
 }
 
-/// Calls of other threads that wait come back first.
+/// Waits until waiting calls of other threads have returned.
 Tracker::Impl::~Impl() {
   constexpr std::chrono::microseconds kPause(100);
   drive_->abandon();
@@ -122,7 +122,7 @@ void Tracker::Impl::close() {
   results_.endWaitsForRoom();
 }
 
-/// The new drive is there before the old one goes: where there is no memory for it, nothing has changed.
+/// The new drive is made before the old one goes: if memory runs out, nothing has changed.
 void Tracker::Impl::reset() {
   constexpr std::chrono::microseconds kPause(100);
   const Visit visit(visits_);
@@ -143,7 +143,7 @@ void Tracker::Impl::requireOtherThread() const {
   if (drive_->delivers()) throw Error("reset", "cannot be called by the callback for finals, which it would wait for");
 }
 
-/// Pairs of which no result came count as dropped.
+/// Replaces the drive. Pairs without a result count as dropped.
 void Tracker::Impl::replaceDrive(std::unique_ptr<TrackedDrive> next) {
   const std::int64_t first_id = drive_->end();
   dropped_ = entered_ - results_.given();
@@ -239,7 +239,7 @@ Tracker::Tracker(const Camera& camera, const Options& options) try
   throw Error("options", error.what());
 }
 
-/// A child leaves the memory to the end of its process: what to join and to wait for is in the process that made it.
+/// A forked child leaves the memory to the end of its process: the threads to join are in the parent.
 Tracker::~Tracker() {
   if (impl_->inherited()) static_cast<void>(impl_.release());
 }

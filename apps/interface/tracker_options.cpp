@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kMostCovarianceFrames = 60;  // every back-end remembers as many
 
-/// Tried on a thread of its own.
+/// Tries a thread placement on a thread of its own.
 std::string problemWith(const ThreadPlacement& placement) {
   std::string problem;
   std::jthread([&] { problem = PlacedThread(placement).problem(); }).join();
   return problem;
 }
 
-/// Each processor alone: of several, the system leaves out those that are not there.
+/// Requires each processor by itself: of several, the system silently leaves out missing ones.
 void requireProcessors(const std::vector<int>& cpus) {
   for (const int cpu : cpus) {
     const std::string has = "has " + std::to_string(cpu) + "; ";
@@ -54,7 +54,8 @@ void requireValid(const Tracker::Options& options) {
   if (options.patience.count() < 0) throw Error("options.patience", "is negative");
 }
 
-/// What has an option of its own may stand in the settings, as in the file that a run writes, but not otherwise.
+/// Throws where the settings contradict an option. A value that has an option of its own may stand in them, as in the
+/// file that a run writes.
 void requireAgreement(const PipelineParams& settings, const Tracker::Options& options) {
   if (settings.threads != options.threads)
     throw Error("options.settings", "say pipeline.threads = " + std::to_string(settings.threads) +

@@ -6,11 +6,11 @@
 
 namespace motorcade {
 
-/// A caller's options as the pipeline takes them, with what the camera says of itself where its settings do not. Throws
+/// A caller's options as the pipeline takes them. The camera's own values apply where the settings have none. Throws
 /// Error naming the field.
 PipelineConfig configOf(const Tracker::Options& options, const Camera& camera);
 
-/// The caller's log, from which no exception comes.
+/// The caller's log; its exceptions are caught.
 LogCallback logOf(const Tracker::Options& options);
 
 }  // namespace motorcade

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// The farthest stamp, either side of zero: differences of two still are numbers.
+/// The farthest stamp on either side of zero. Differences of two stamps do not overflow.
 inline constexpr std::int64_t kFarthestStamp_ns = std::int64_t{1} << 62;
 
 /// The reason why a sample cannot be used, as static text; null where it can.

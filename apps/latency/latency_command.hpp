@@ -8,7 +8,7 @@ struct LatencyOptions {
   std::filesystem::path run{}, json{};
 };
 
-/// Prints where the time of a run's frames went; gives the exit code. Failures are UserErrors.
+/// Prints the times of a run's frames by their causes; returns the exit code. Failures are UserErrors.
 int runLatency(const LatencyOptions& options);
 
 }  // namespace motorcade

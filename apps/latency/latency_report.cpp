@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-/// Less than this above the median is not worth telling.
+/// Least time above the median that is worth reporting.
 constexpr double kTold_ms = 0.1;
 
 template <class Value>

@@ -9,24 +9,24 @@
 
 namespace motorcade {
 
-/// Of a sample, by nearest rank; zeros of none.
+/// Percentiles of a sample by nearest rank; zeros for an empty one.
 struct Percentiles {
   double p50 = 0, p95 = 0, p99 = 0, max = 0;
 };
 Percentiles percentilesOf(std::vector<double> values);
 
-/// A stretch of the longest way of a frame through the pipeline. The stretches of a frame add up to its latency.
+/// A part of a frame's critical path through the pipeline. The parts of a frame add up to its latency.
 struct WayPart {
   std::string name;
   double ms = 0;
 };
 
-/// From the moment the pair was due until its result was published: waiting and working by turns. Of stereo matching
-/// and optical flow, which run side by side, the way leads over the one that ended last.
+/// The critical path from the moment the pair was due until its result was published: waits and work in turn. Stereo
+/// matching and optical flow run side by side, so that the path includes only the one that ended last.
 std::vector<WayPart> longestWay(const FrameRow& row);
 
-/// Time that the stages worked on a frame, without any waiting: the sum of all, of stereo matching and optical flow,
-/// which run side by side, the longer.
+/// Working time of the stages on a frame, without any waiting. Stereo matching and optical flow run side by side, so
+/// that only the longer of the two is added.
 double processing_ms(const std::array<double, kStageCount>& work_ms);
 double processing_ms(const FrameRow& row);
 
@@ -35,7 +35,7 @@ struct StageLatency {
   Percentiles work_ms, wait_ms, cpu_ms;
 };
 
-/// A frame that took long, and what of that lies above the median frame, largest first.
+/// A slow frame, and the parts of its latency that exceed the median frame's, largest first.
 struct SlowFrame {
   FrameRow row;
   std::vector<WayPart> above_median;
@@ -49,7 +49,7 @@ struct LatencyReport {
   std::vector<SlowFrame> slowest;
 };
 
-/// Of the frames that entered the pipeline; the slowest come first.
+/// Reports the latency of the frames that entered the pipeline; the slowest come first.
 LatencyReport latencyReport(const std::vector<FrameRow>& rows, std::size_t slowest = 5);
 
 }  // namespace motorcade

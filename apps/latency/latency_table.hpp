@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// At most 100 columns wide.
+/// A table of at most 100 columns.
 std::string latencyTable(const LatencyReport& report);
 std::string latencyJson(const LatencyReport& report);
 

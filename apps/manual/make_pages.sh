@@ -5,7 +5,7 @@ motorcade=$1 pages=$2 room=$(dirname "$0")
 export LC_ALL=C.UTF-8
 mkdir -p "$pages"
 
-# Programs of the pages' names, so that no page names the folder of a build; a list within an option's text gets its stops.
+# Makes programs of the pages' names, so that no page names the folder of a build. A list within an option's text gets its stops.
 calls=$(mktemp -d)
 trap 'rm -rf "$calls"' EXIT
 call() {
@@ -27,7 +27,7 @@ commands_of() {
   "$motorcade" $1 --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p' | grep -vx help || true
 }
 
-# pages_of WORDS: of the commands behind them, and those behind these
+# pages_of WORDS: pages of the commands behind them, and of their subcommands
 pages_of() {
   local command purpose
   for command in $(commands_of "$1"); do

@@ -1,5 +1,5 @@
-# Completes what is typed behind `motorcade` in bash: commands, options and the values that an option chooses from. All are read
-# from the program's own help; whatever else is completed as the name of a file.
+# Completes words behind `motorcade` in bash: commands, options and the values that an option allows. All are read from the program's
+# own help; any other word is completed as the name of a file.
 
 # Reads the help of the program; names of its commands.
 _motorcade_commands() { sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p'; }
@@ -7,7 +7,7 @@ _motorcade_commands() { sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p';
 # Reads a command's help; names of its options.
 _motorcade_options() { sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n'; }
 
-# Reads a command's help; the values of option $1, which stand in it as `--scene TEXT:{overtake,highway}`.
+# Reads a command's help; the values of option $1, which it gives as `--scene TEXT:{overtake,highway}`.
 _motorcade_values() {
   grep -E -- "^  (-[a-z],)?$1 " | sed -n 's/^[^{]*{\([^}]*\)}.*/\1/p' | tr ',' '\n'
 }

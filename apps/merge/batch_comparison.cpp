@@ -17,7 +17,7 @@ constexpr double kSignificant = 0.05;
 constexpr std::string_view kBetter = "better", kWorse = "worse";  // verdicts that are sure
 constexpr std::size_t kMostRegressions = 40;                      // of the table; the JSON file has all
 
-/// What is compared: few measures that say most, as each more makes the test less sharp.
+/// The measures that are compared. They are few, as each more makes the test less sharp.
 constexpr std::array<std::string_view, 16> kAccuracy{"camera_ate_m",
                                                      "camera_rpe_t_rmse_m",
                                                      "camera_rpe_r_rmse_deg",
@@ -58,7 +58,7 @@ struct Pair {
 
 bool differs(double a, double b) { return !std::isnan(a) && !std::isnan(b) && a != b; }
 
-/// Those that only one of both batches has are named.
+/// Pairs the seeds of both batches. Those that only one of them has are named.
 std::vector<Pair> pairsOf(const SeedValues& ours, const SeedValues& others, std::vector<std::string>& unpaired) {
   std::vector<Pair> pairs;
   for (const auto& [name, values] : ours) {
@@ -107,7 +107,7 @@ std::string verdictOn(const MeasureComparison& comparison) {
   return std::string(comparison.better > comparison.worse ? kBetter : kWorse);
 }
 
-/// Measures of which too few pairs differ cannot be significant, and so are no tests.
+/// Corrects for the number of tests. A measure of which too few pairs differ cannot be significant, and so is no test.
 void correctForNumber(std::vector<MeasureComparison>& measures) {
   std::vector<MeasureComparison*> tested;
   std::vector<double> p_values;

@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// How one measure differs between two batches, over their pairs of the same drive, set and seed.
+/// Difference of one measure between two batches, over their pairs of the same drive, set and seed.
 struct MeasureComparison {
   std::string_view measure{};
   std::size_t pairs = 0, better = 0, worse = 0;  // the others are the same
@@ -35,7 +35,7 @@ struct BatchComparison {
   std::vector<std::string> unpaired{};    // results that one of both lacks
 };
 
-/// Where each batch has a single set, its name does not matter.
+/// Compares two batches. Where each has a single set, the sets' names need not agree.
 BatchComparison compareBatches(const std::vector<ResultGroup>& ours, const std::vector<ResultGroup>& others,
                                const std::filesystem::path& against);
 

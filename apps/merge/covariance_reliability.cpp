@@ -30,7 +30,7 @@ void addTo(CovarianceReliability& sums, const nlohmann::json& covariances) {
     }
 }
 
-/// Calls `take` with the set's name, that of the estimate, the title, and the counts of each that has some.
+/// Calls `take` with the set's name, the estimate's, the title, and the counts, unless there are none.
 template <class Take>
 void forEach(const CovarianceReliabilityBySet& sets, const Take& take) {
   for (const auto& [set, of_set] : sets)

@@ -8,7 +8,7 @@
 
 #include "apps/evaluate/measures/axis_reliability.hpp"
 
-/// Covariances of all drives together, by axis: what they claim against what was found.
+/// Covariances of all drives together, by axis, compared with the errors.
 namespace motorcade {
 
 struct ResultTable;
@@ -17,14 +17,14 @@ struct ResultTable;
 inline constexpr std::array kCovarianceTitles = {"camera, over ten frames", "camera, since the start", "objects"};
 using CovarianceReliability = std::array<AxisReliability, kCovarianceTitles.size()>;
 
-/// What the runs with one set of parameters claimed.
+/// Reliability of the covariances of all runs with one set of parameters.
 struct CovarianceReliabilityOfSet {
   CovarianceReliability final, online;
 };
 using CovarianceReliabilityBySet = std::map<std::string, CovarianceReliabilityOfSet>;
 
-/// Adds what an evaluation counted, of the camera's motion with the truth's noise where that has some. An evaluation of
-/// an earlier version counted nothing.
+/// Adds an evaluation's counts. The camera's motion includes the truth's noise where it has some. Evaluations of
+/// earlier versions have no counts.
 void addCovariances(CovarianceReliabilityOfSet& sums, const nlohmann::json& evaluation);
 
 /// A row for each set, estimate and covariance of which there are errors, a column for each axis.

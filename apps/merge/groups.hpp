@@ -20,7 +20,7 @@ class ResultGroup {
 
   ResultGroup(std::string drive, std::string set) : drive_(std::move(drive)), set_(std::move(set)) {}
   void add(const MergedTask& task);
-  /// Call it after the last `add`.
+  /// Computes the means; call it after the last `add`.
   void finish();
 
   const std::string& drive() const { return drive_; }
@@ -29,7 +29,7 @@ class ResultGroup {
   const WorstFrameOfEach& worst() const { return worst_; }
   const std::vector<Seed>& seeds() const { return seeds_; }
 
-  /// Over the seeds that have a value; kNoValue where none has.
+  /// Statistics over the seeds that have a value; kNoValue where none has.
   double mean(std::string_view measure) const;
   double sum(std::string_view measure) const;
   double largest(std::string_view measure) const;
@@ -46,7 +46,7 @@ class ResultGroup {
   std::vector<std::vector<std::size_t>> counts_;  // of the repetitions that have a value, by seed and measure
 };
 
-/// Those of a batch that have results, in its order: all sets of a drive one after the other.
+/// The groups of a batch that have results, in its order: all sets of a drive one after the other.
 std::vector<ResultGroup> groupsOf(const MergedBatch& batch);
 
 /// Counts the parameter sets.

@@ -86,7 +86,7 @@ bool closesName(std::string_view part) {
   return std::ranges::find(kSummaries, part) != std::end(kSummaries);
 }
 
-/// Cuts the first part off; a word that is not known stands for itself.
+/// Cuts the first part off; an unknown word stands for itself.
 std::string_view takePart(std::string_view& key) {
   for (const auto& [part, meaning] : kParts) {
     if (!key.starts_with(part) || (key.size() > part.size() && key[part.size()] != '_')) continue;

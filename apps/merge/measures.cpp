@@ -198,7 +198,7 @@ double numberAt(const nlohmann::json& json, std::string_view path) {
   return value.is_number() ? value.get<double>() : kNoValue;
 }
 
-/// What a real drive's truth says of the covariances counts without its mounting error.
+/// Takes the consistency measures of a real drive without the truth's mounting error, where they exist.
 void preferMounted(MeasureValues& values, const nlohmann::json& evaluation) {
   struct Other {
     std::string_view name, part, path;

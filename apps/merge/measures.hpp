@@ -10,10 +10,10 @@
 
 namespace motorcade {
 
-/// Which of two values is the better one.
+/// Direction in which a value is better.
 enum class Better { kLower, kHigher, kNeither };
 
-/// A number that every result of a batch may have, and where it stands.
+/// A number that every result of a batch may have, and its position in a file.
 struct Measure {
   std::string_view name;   // of its column, with its unit
   std::string_view path;   // JSON pointer in evaluation.json, or behind `summary:` in summary.json
@@ -30,7 +30,7 @@ std::size_t measureIndex(std::string_view name);
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 using MeasureValues = std::vector<double>;
 
-/// Those of a result; either file's content may be null. Values that are computed from several stay empty here.
+/// The values of a result; either file's content may be null. Values that are computed from several stay empty here.
 MeasureValues measuresOf(const nlohmann::json& evaluation, const nlohmann::json& summary);
 
 }  // namespace motorcade

@@ -11,8 +11,8 @@ struct MergeOptions {
   std::string baseline_set{};            // whose objects others are compared with; the plan's when empty
 };
 
-/// Writes results.csv, results.json, results.md and report.html of all that is finished, and prints the table to read
-/// first; gives the exit code. Failures are UserErrors.
+/// Writes results.csv, results.json, results.md and report.html of all finished tasks, and prints the most important
+/// table. Returns the exit code. Failures are UserErrors.
 int runMerge(const MergeOptions& options);
 
 }  // namespace motorcade

@@ -37,7 +37,7 @@ nlohmann::json jsonIn(const fs::path& file) {
   }
 }
 
-/// Keeps the largest values; of equal ones the first.
+/// Keeps the largest values; the first one when two are equal.
 void keepWorst(std::vector<WorstFrame>& worst, WorstFrame frame) {
   const auto place = std::ranges::upper_bound(worst, frame.value, std::greater(), &WorstFrame::value);
   if (place == worst.end() && worst.size() == kMostWorst) return;
@@ -70,7 +70,7 @@ void addWorstErrors(MergedBatch& batch, MergedTask& merged, const nlohmann::json
               fmt::format("label {}, track {}", frame.at("label").get<int>(), frame.at("track_id").get<int>())});
 }
 
-/// The frames of a run that came out latest, each with what lies most above its median frame.
+/// Adds the frames of a run with the largest latency, each with the part that exceeds the median frame's most.
 void addLatestFrames(MergedBatch& batch, MergedTask& merged, const std::vector<FrameRow>& rows) {
   for (const SlowFrame& slow : latencyReport(rows, kMostOfATask).slowest) {
     const std::string most = slow.above_median.empty() ? ""
@@ -107,7 +107,7 @@ void readResult(MergedBatch& batch, MergedTask& merged, const fs::path& result) 
   addLatestFrames(batch, merged, rows);
 }
 
-/// Others are merged all the same where a result cannot be read.
+/// Reads a result. If it cannot be read, the others are merged all the same.
 void readOrFail(MergedBatch& batch, MergedTask& merged, const fs::path& result) {
   try {
     readResult(batch, merged, result);
@@ -132,7 +132,7 @@ MergedTask merge(MergedBatch& batch, const Task& task, const BatchFolder& folder
   return merged;
 }
 
-/// What results that are compared with each other have in common.
+/// Key that is equal for results to be compared with each other.
 std::string pairKey(const Task& task) {
   return fmt::format("{}/{}/{}", task.drive, task.seed ? std::to_string(*task.seed) : "", task.repetition);
 }

@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// What became of a task.
+/// Outcome of a task.
 enum class TaskOutcome { kDone, kFailed, kMissing };
 std::string_view outcomeName(TaskOutcome outcome);
 

@@ -87,7 +87,7 @@ Json jsonOf(const BatchComparison& comparison) {
           {"unpaired", comparison.unpaired}};
 }
 
-/// Of a table, as RFC 4180 has it.
+/// Quotes a field of a CSV table by RFC 4180.
 std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string field = "\"";

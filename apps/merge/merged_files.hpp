@@ -8,10 +8,10 @@
 #include "apps/merge/groups.hpp"
 #include "apps/merge/merged_batch.hpp"
 
-/// What is written of a merged batch, each as the content of a file.
+/// Files of a merged batch; each function returns the content of one.
 namespace motorcade {
 
-/// All that there is to tell.
+/// The content of all files.
 struct Merged {
   MergedBatch batch{};
   std::vector<ResultGroup> groups{};
@@ -31,7 +31,7 @@ std::string pageOf(const Merged& merged);
 std::vector<ResultTable> publishedSection(const Merged& merged);
 /// Drives that are not on the disk.
 ResultTable leftOutTable(const MergedBatch& batch);
-/// Tasks without a result, and why.
+/// Tasks without a result, and the reasons.
 ResultTable unfinishedTable(const MergedBatch& batch);
 /// Frames to look at, of one kind of `value`.
 ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames);

@@ -14,7 +14,7 @@
 namespace motorcade {
 namespace {
 
-/// Better and worse differ by a sign, too, for who sees no red or no green.
+/// Better and worse differ by a sign, too, for readers who see no red or no green.
 constexpr std::string_view kStyle = R"css(
 .wide th, .wide td { white-space: nowrap; }
 .grid { display: grid; gap: 1rem; align-items: start;
@@ -62,7 +62,7 @@ std::vector<std::string> setNames(const std::vector<ResultGroup>& groups) {
   return names;
 }
 
-/// A color for each set of parameters; no name where there is one alone.
+/// A color for each set of parameters; a single set has no name.
 std::vector<ChartPart> seriesOf(const std::vector<std::string>& sets) {
   constexpr std::array kColors{1, 7, 3, 5, 4, 6, 2};  // those first that differ most
   std::vector<ChartPart> series;
@@ -109,7 +109,7 @@ std::string distributions(const std::vector<ResultGroup>& groups) {
   return charts.empty() ? "" : "<div class=\"grid\">\n" + charts + "</div>\n";
 }
 
-/// Which share of all frames came out within so many milliseconds.
+/// Chart of the share of all frames whose latency is below a number of milliseconds.
 std::string latencyDistribution(const MergedBatch& batch) {
   std::vector<ChartLine> lines;
   std::vector<std::string> sets;

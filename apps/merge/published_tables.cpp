@@ -34,7 +34,7 @@ std::vector<std::string> setsOf(const std::vector<ResultGroup>& groups) {
   return sets;
 }
 
-/// The frames of a drive that a figure tells of; 0 where that is not told.
+/// The number of frames of a drive in a figure; 0 where it is not given.
 int framesOf(const PublishedFigure& figure, const std::string& drive) {
   const auto place = static_cast<std::size_t>(std::ranges::find(figure.drives, drive) - figure.drives.begin());
   return place < figure.frames.size() ? figure.frames[place] : 0;
@@ -51,7 +51,7 @@ double comparedValue(const ResultGroup& group, const PublishedFigure& figure) {
   return hasFrames(group, framesOf(figure, group.drive())) ? group.mean(figure.measure) : kNoValue;
 }
 
-/// The same of a drive and set in a batch.
+/// The value of a drive and set in a batch.
 double comparedValueOf(const std::vector<ResultGroup>& groups, const std::string& drive, const std::string& set,
                        const PublishedFigure& figure) {
   for (const ResultGroup& group : groups)
@@ -59,7 +59,7 @@ double comparedValueOf(const std::vector<ResultGroup>& groups, const std::string
   return kNoValue;
 }
 
-/// Does the batch have one of the figure's drives?
+/// True if the batch has one of the figure's drives.
 bool isCompared(const std::vector<ResultGroup>& groups, const PublishedFigure& figure) {
   return std::ranges::any_of(groups, [&](const ResultGroup& group) {
     return std::ranges::find(figure.drives, group.drive()) != figure.drives.end() &&
@@ -67,7 +67,7 @@ bool isCompared(const std::vector<ResultGroup>& groups, const PublishedFigure& f
   });
 }
 
-/// In the order in which they come first.
+/// Distinct values in the order of their first occurrence.
 template <class Part>
 std::vector<std::string> distinct(const std::vector<PublishedFigure>& figures, const Part& part) {
   std::vector<std::string> all;
@@ -83,7 +83,7 @@ std::vector<PublishedFigure> figuresOf(const std::vector<PublishedFigure>& figur
   return of_measure;
 }
 
-/// The figure of a method for a group's drive; not a number where there is none to compare.
+/// The figure of a method for a group's drive; NaN where none can be compared.
 double publishedValue(const std::vector<PublishedFigure>& figures, const std::string& method,
                       const ResultGroup& group) {
   for (const PublishedFigure& figure : figures)
@@ -122,7 +122,7 @@ struct MeanPair {
   std::size_t of = 0;      // that the published mean is of
   double here = 0, published = 0;
 
-  /// A mean that was published as such is compared where all of its drives are there.
+  /// True if all drives are there. Only then is a published mean compared.
   bool whole() const { return drives == of; }
 };
 

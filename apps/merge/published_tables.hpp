@@ -7,7 +7,7 @@
 #include "apps/merge/result_tables.hpp"
 #include "apps/tasks/published_figures.hpp"
 
-/// Published figures beside those of a batch, each with a measure of the same definition alone.
+/// Published figures beside those of a batch. Only measures of the same definition are compared.
 namespace motorcade {
 
 /// Leaves out figures of measures that no result has, and logs a warning for each such measure.
@@ -23,10 +23,10 @@ ResultTable publishedMeans(const std::vector<ResultGroup>& groups, const std::ve
 /// Lists the sources of the figures in these tables, with notes on how their measurement differs.
 ResultTable publishedSources(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
 
-/// Drives that are not compared, as a run has other frames than the drive of the published figures.
+/// Drives that are not compared, as the run's frames differ from those of the published figures.
 ResultTable otherFrames(const std::vector<ResultGroup>& groups, const std::vector<PublishedFigure>& figures);
 
-/// Rows of results.csv: for each method and drive one with its figures, by the place of their measures.
+/// Rows of results.csv: one for each method and drive, with its figures in the order of the measures.
 struct PublishedRow {
   std::string method{}, drive{}, source{};
   MeasureValues values{};

@@ -24,13 +24,13 @@ inline constexpr Claim kExistenceClaim{"Existence: share that is real", "/existe
 inline constexpr Claim kKindClaim{"Kinds named to 30 m from a track's tenth row on: share that is right",
                                   "/kinds_within_30m/from_tenth_row/named", "right"};
 
-/// What the runs with one set of parameters claimed.
+/// Reliability of all runs with one set of parameters.
 struct ReliabilityOfSet {
   Reliability final, online;
 };
 using ReliabilityBySet = std::map<std::string, ReliabilityOfSet>;
 
-/// Adds what an evaluation counted; one without labels, or of an earlier version, counted nothing.
+/// Adds an evaluation's counts; one without labels, or of an earlier version, has none.
 void addReliability(ReliabilityOfSet& sums, const Claim& claim, const nlohmann::json& evaluation);
 
 /// A row for each set and estimate that has rows, a column for each tenth in which any has some.

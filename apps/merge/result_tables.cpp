@@ -56,7 +56,7 @@ std::string mountedText(const ResultGroup& group) {
                      numberText(group.mean("camera_mounted_rpe_t_rmse_m"), 4));
 }
 
-/// Means over segments; of drives too short for the benchmark's lengths with the ones they have.
+/// Means over segments; short drives use the segment lengths that they have.
 Column segmentColumn(std::string head, std::string_view measure, std::string_view online, int digits) {
   return {std::move(head), [=](const ResultGroup& group) {
             constexpr double kShortest_m = 100;
@@ -123,7 +123,7 @@ std::vector<Column> objectColumns() {
           {"id switches", [](const ResultGroup& group) { return numberText(group.sum("id_switches"), 1); }}};
 }
 
-/// First the form in which others publish these errors.
+/// Columns of motion errors, the form of published figures first.
 std::vector<Column> motionColumns() {
   return {
       pairColumn("ME_t m RMS of each object, mean, final / online", "me_t_object_rms_m", "online_me_t_object_rms_m", 3),
@@ -206,15 +206,15 @@ std::string worstText(const WorstFrame& frame, int digits) {
              : fmt::format("{} (frame {} of {})", numberText(frame.value, digits), frame.frame, frame.task);
 }
 
-/// Where to look first, drive by drive.
+/// Columns of the worst frames of each drive, the first to look at.
 std::vector<Column> worstColumns() {
   return {{"RPE_t m", [](const ResultGroup& group) { return worstText(group.worst().camera_m, 3); }},
           {"ME_t m", [](const ResultGroup& group) { return worstText(group.worst().object_m, 3); }},
           {"latency ms", [](const ResultGroup& group) { return worstText(group.worst().latest_ms, 1); }}};
 }
 
-/// Marks, of one drive's results in rows next to each other, the best set by each measure and the worst, where they
-/// differ by so much that it is worth telling.
+/// Marks the best set by each measure and the worst among one drive's results, which are in adjacent rows. Marks only
+/// differences that are large enough to tell.
 void markSets(ResultTable& table, const std::vector<const ResultGroup*>& groups, const std::vector<Column>& columns) {
   constexpr double kWorthMarking = 0.02;  // of the mean of both
   for (std::size_t begin = 0, end = 0; begin < groups.size(); begin = end) {

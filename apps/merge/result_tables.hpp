@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Marks a cell as better or worse than what it is compared with.
+/// Marks a cell as better or worse than the value that it is compared with.
 enum class Tone { kNone, kBetter, kWorse };
 
 /// A table of texts; the first `names` columns are names, the others numbers.
@@ -20,19 +20,19 @@ struct ResultTable {
   std::vector<std::vector<Tone>> tones{};  // by row and column, for pages; none where it is empty
 };
 
-/// The one to read first: how far camera and objects are from the truth.
+/// The table to read first, with the errors of camera and objects.
 ResultTable overviewTable(const std::vector<ResultGroup>& groups);
 /// Every measure of accuracy, a table for each kind, latency and cost, and the worst frames: a row for each drive and
 /// set.
 std::vector<ResultTable> measureTables(const std::vector<ResultGroup>& groups);
 
-/// Rounded to so many digits, without those that are zero; `-` for no value.
+/// A number rounded to `digits` digits, without trailing zeros; `-` for no value.
 std::string numberText(double value, int digits);
-/// In percent, with its sign; `-` for no value.
+/// A share in percent, with its sign; `-` for no value.
 std::string percentText(double share, int digits);
 
 std::string markdownOf(const ResultTable& table);
-/// As HTML, escaped.
+/// HTML of a table, escaped.
 std::string htmlOf(const ResultTable& table);
 
 }  // namespace motorcade

@@ -6,7 +6,7 @@
 namespace motorcade {
 namespace {
 
-/// What would end a cell of a Markdown table.
+/// Text of a cell, without the characters that would end a cell of a Markdown table.
 std::string cellText(const std::string& text) {
   std::string cell;
   for (const char c : text) {

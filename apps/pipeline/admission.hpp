@@ -2,7 +2,7 @@
 
 namespace motorcade {
 
-/// What became of a frame that was pushed.
+/// Outcome of a push.
 enum class Admission {
   kTaken,
   kReplacedOlder,  // taken, and one that still waited is dropped
@@ -13,7 +13,7 @@ enum class Admission {
   kClosed,         // ignored: no further frame may come
 };
 
-/// Does a result come of the frame, unless a newer one replaces it?
+/// True if a result will come, unless a newer frame replaces this one.
 constexpr bool isTaken(Admission admission) {
   return admission == Admission::kTaken || admission == Admission::kReplacedOlder;
 }

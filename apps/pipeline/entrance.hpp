@@ -5,13 +5,13 @@
 
 namespace motorcade {
 
-/// Where a live frame waits until the frame before it has left the stages whose loops keep every worker busy: admitted
-/// earlier it would only slow that one down and grow old, while in the mailbox the newest frame replaces it. Each
-/// admitted frame gets that far, so that the wait ends.
+/// Holds a live frame until the previous one has left the stages whose loops keep every worker busy. Admitted earlier
+/// it would only slow that one down and grow old, while in the mailbox the newest frame replaces it. Each admitted
+/// frame leaves those stages, so that the wait ends.
 class Entrance {
  public:
-  /// Called once before each admission: waits until all frames admitted so far have passed, or until `given_up` says,
-  /// asked now and then, that they will not.
+  /// Waits until all frames admitted so far have passed, or until `given_up`, which is asked now and then, says that
+  /// they will not. Called once before each admission.
   template <class GivenUp>
   void waitForTurn(const GivenUp& given_up) {
     constexpr std::chrono::milliseconds kPatience(100);

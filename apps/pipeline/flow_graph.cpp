@@ -49,7 +49,7 @@ constexpr auto kEdgeNames = std::to_array<const char*>(
      "incremental_optimization>object_shapes", "object_shapes>publish"});
 static_assert(kEdgeNames.size() == kEdges);
 
-/// Declared after the nodes: none of them ends while a task may use it, also when the wiring lacks memory.
+/// Declared after the nodes, so that none of them ends while a task may use it, also when the wiring lacks memory.
 class Drained {
  public:
   explicit Drained(flow::graph& graph) : graph_(graph) {}
@@ -101,8 +101,8 @@ class FlowGraph::Impl {
   int workers_;
   oneapi::tbb::task_arena arena_;
   WorkerTeam team_;
-  /// Of the graph: canceled where the library itself lacked memory for a task. Waiting for the graph does not reset it,
-  /// as the next frame may come meanwhile.
+  /// Context of the graph, canceled when the library itself lacked memory for a task. Waiting for the graph does not
+  /// reset it, as the next frame may come meanwhile.
   oneapi::tbb::task_group_context context_{oneapi::tbb::task_group_context::isolated,
                                            oneapi::tbb::task_group_context::concurrent_wait};
   std::atomic<bool> failed_ = false, abandoned_ = false;
@@ -125,7 +125,7 @@ FlowGraph::Impl::Impl(const PipelineParams& params, Work work)
   wired.get();
 }
 
-/// Nothing may leave the thread: what goes wrong before the graph is wired is the constructor's to throw.
+/// No exception may leave the thread. The constructor rethrows those from before the graph is wired.
 void FlowGraph::Impl::run(std::promise<void>& wired) {
   try {
     arena_.execute([this, &wired] { wireAndRun(wired); });
@@ -148,7 +148,8 @@ void FlowGraph::Impl::join() {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-/// An exception ends the graph's work: jobs still go through, so that all come out, but nothing is done with them.
+/// Calls `act` unless the work was given up. An exception ends the graph's work: jobs still pass through the nodes, but
+/// no stage runs.
 template <class Act>
 void FlowGraph::Impl::unlessGivenUp(const Act& act) {
   if (failed_ || abandoned_) return;
@@ -159,7 +160,7 @@ void FlowGraph::Impl::unlessGivenUp(const Act& act) {
   }
 }
 
-/// What a node does with a job: takes it off the edges that lead here, works, and leaves it on the edges that lead on.
+/// Body of a node: takes the job off its incoming edges, works, and puts it on its outgoing edges.
 auto FlowGraph::Impl::stage(std::vector<Edge> in, void (StageRunner::*work)(Job&), std::vector<Edge> out) {
   return [this, in = std::move(in), work, out = std::move(out)](Job* job) {
     team_.occupy();
@@ -176,8 +177,9 @@ void FlowGraph::Impl::publish(Job& job) {
   team_.finish();
 }
 
-/// The wiring: stateless stages `unlimited`, stages with memory `serial` behind a sequencer (a serial node may start
-/// its next message before it has handed on the last one). Stays in the graph until it is closed and all jobs are out.
+/// Wires the graph: stateless stages `unlimited`, stages with memory `serial` behind a sequencer. (A serial node may
+/// start its next message before it has handed on the last one.) Stays in the graph until it is closed and all jobs are
+/// out.
 void FlowGraph::Impl::wireAndRun(std::promise<void>& wired) {
   flow::graph graph(context_);
   Node prepare(graph, flow::unlimited, stage({kToPrepare}, &StageRunner::prepare, {kToStereo, kToFlow}));

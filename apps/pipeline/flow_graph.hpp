@@ -19,7 +19,7 @@ class StageRunner;
 /// The stages as a flow graph with workers of its own: jobs go in one by one and are published in the same order.
 class FlowGraph {
  public:
-  /// What its nodes call. They must outlive it.
+  /// Objects that the nodes call. They must outlive the graph.
   struct Work {
     StageRunner& stages;
     Publisher& publisher;  // closed when the last job is out
@@ -31,22 +31,22 @@ class FlowGraph {
   /// Waits for the jobs in flight.
   ~FlowGraph();
 
-  /// One thread: puts a job in; never refused.
+  /// One thread: puts a job in, which is never refused.
   void put(Job& job);
   /// The same thread: no further job comes.
   void close();
-  /// Any thread: puts an end to the work of the graph, for a reason that `join` throws.
+  /// Any thread: ends the work of the graph, for a reason that `join` throws.
   void fail(const std::exception_ptr& reason);
-  /// Any thread: nothing more is done with the jobs in flight, nor with those that come; they only come out.
+  /// Any thread: stops the work on jobs in flight and on further ones; they only come out.
   void abandon();
-  /// The graph cannot or shall not go on; it has been closed or is to be.
+  /// True when the graph cannot or shall not go on; it has been closed or will be.
   bool failed();
-  /// After `close`: waits until all jobs are out. Throws what the graph failed of.
+  /// Waits, after `close`, until all jobs are out. Throws the exception that the graph failed with.
   void join();
 
-  /// Any thread: how many jobs wait on each edge now.
+  /// Any thread: the number of jobs that wait on each edge now.
   std::vector<QueueDepth> depths(std::int64_t bound) const;
-  /// After `join`: how many jobs waited on each edge.
+  /// The most jobs that ever waited on each edge; valid after `join`.
   std::vector<QueueMark> queues(std::int64_t bound) const;
 
  private:

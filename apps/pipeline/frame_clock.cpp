@@ -24,7 +24,7 @@ bool FrameClock::isFarAhead(Timestamp stamp) const {
   return !refused_ahead_ || stamp <= *refused_ahead_;
 }
 
-/// Whether as many frames as it takes were refused before this one, each after the one before.
+/// True when enough frames were refused before this one, each after its predecessor.
 bool FrameClock::goesOn(Timestamp stamp) {
   const bool in_order = refused_ > 0 && stamp > last_refused_;
   if (in_order && refused_ >= kRefused) return true;

@@ -7,24 +7,25 @@
 
 namespace motorcade {
 
-/// The time of frames, which never goes back, whatever the camera's clock does. A frame whose time is not after that of
-/// the frame before is out of order, and so is one far ahead unless the next one agrees. A few frames in a row before
-/// the last one, but in order, show that the clock was set back: times then go on from the last one, at the pace of the
-/// new ones.
+/// The time of frames, which never goes back, whatever the camera's clock does. A frame whose time is not after the
+/// previous frame's is out of order. So is one far ahead, unless the next one agrees. A few frames in a row before the
+/// last one, but in order, show that the clock was set back. Times then go on from the last one, at the pace of the new
+/// ones.
 class FrameClock {
  public:
-  /// Beyond it a frame is far ahead: no motion can be followed over as long.
+  /// Least jump of a frame that is far ahead: no motion can be followed over a longer time.
   static constexpr std::int64_t kFarAhead_ns = 10'000'000'000;
-  /// So many frames in a row that are before the last one are refused; the next one goes on.
+  /// Number of frames in a row before the last one that are refused. The next one is accepted.
   static constexpr int kRefused = 4;
 
-  /// The time of a frame that the camera stamped so; empty when it is out of order.
+  /// The time of a frame with this stamp of the camera; empty when it is out of order.
   std::optional<Timestamp> read(Timestamp stamp);
-  /// The frame that was refused last was far ahead.
+  /// True when the last refused frame was far ahead.
   bool refusedFarAhead() const { return refused_ahead_.has_value(); }
-  /// When the frame that was refused last was likely taken: one period after the frame before it.
+  /// Likely capture time of the frame that was refused last: one period after the frame before it.
   Timestamp expected() const { return expected_; }
-  /// How much later frames are than the camera says: how far its clock was set back, time without frames aside.
+  /// Offset from the camera's time to the frames' time. It is how far the clock was set back, time without frames
+  /// aside.
   std::int64_t ahead_ns() const { return ahead_ns_; }
 
  private:

@@ -6,14 +6,14 @@
 namespace motorcade {
 namespace {
 
-/// No motion is taken to go on for longer.
+/// Longest time over which a motion is extrapolated.
 constexpr double kMaxPrediction_s = 1.0;
 
 }  // namespace
 
 void GapFiller::Trail::add(const Moment& moment) { before = std::exchange(last, moment); }
 
-/// Constant velocity through the last two moments, for a second before and after them.
+/// Extrapolates at constant velocity from the last two moments, up to a second before and after them.
 SE3 GapFiller::Trail::at(Timestamp stamp) const {
   if (!last) return SE3();
   if (!before || last->stamp <= before->stamp) return last->T_world_cam;

@@ -19,9 +19,9 @@ inline MissedFrame droppedFrame(FrameId frame, Timestamp stamp) {
   return {.head = {.frame = frame, .stamp = stamp, .status = FrameStatus::kDropped, .cause = FrameCause::kTooLate}};
 }
 
-/// Gives a pose to the frames that the back-end never saw, so that every input frame has its line in the results:
-/// predicted at constant velocity when published, interpolated between its neighbors in the final trajectory; before
-/// the first, the final trajectory is as if the first motion had gone on before. Call it in frame order.
+/// Gives a pose to frames that the back-end never saw, so that every input frame has its line in the results. Published
+/// poses are predicted at constant velocity. In the final trajectory they are interpolated between neighbors; before
+/// the first pose, the first motion is extrapolated backwards. Call it in frame order.
 class GapFiller {
  public:
   /// Estimates of frames that came after the last published one and were not processed.

@@ -12,10 +12,11 @@
 namespace motorcade {
 namespace {
 
-/// Frames that may be lost between two others and still be named one by one; more are counted.
+/// Most frames lost between two others that are named one by one; if there are more, they are counted.
 constexpr std::size_t kMostMissed = 4096;
 
-/// No camera takes pairs so close together; a burst of them that was stamped on arrival tells nothing of speeds either.
+/// Least time between pairs. No camera takes them faster, and the stamps of a burst that was stamped on arrival give no
+/// speeds.
 constexpr std::int64_t kTooClose_ns = 500'000;
 
 std::string whyOutOfOrder(std::int64_t step_ns) {
@@ -26,7 +27,7 @@ std::string whyOutOfOrder(std::int64_t step_ns) {
   return "its time does not follow that of the frame before it";
 }
 
-/// A frame for which there is no memory gives up its images.
+/// Shares a frame. If memory for it is lacking, the frame gives up its images.
 StereoFramePtr shared(StereoFrame frame) {
   const auto make = [&] { return std::make_shared<const StereoFrame>(std::move(frame)); };
   try {
@@ -74,7 +75,7 @@ Admission Intake::judge(StereoFrame frame) {
   return admission;
 }
 
-/// Such a frame's time is the one that was expected; one that is too close has its own.
+/// Refuses a frame. Its time is the expected one; a frame that is too close keeps its own.
 Admission Intake::refuse(const StereoFrame& frame, std::int64_t step_ns, Admission why) {
   const Timestamp time =
       why == Admission::kTooClose ? Timestamp{frame.head.stamp.ns + clock_.ahead_ns()} : clock_.expected();
@@ -123,7 +124,7 @@ Job* Intake::next(const std::function<bool()>& given_up) {
   return job;
 }
 
-/// No frame is lost that another thread's `close` overtakes on its way in.
+/// No frame is lost when another thread's `close` overtakes it on its way in.
 std::optional<Intake::Entering> Intake::take() {
   auto frame = live() ? newest_.take() : input_.pop();
   if (frame) return frame;
@@ -150,7 +151,7 @@ void Intake::admit(Job& job, Entering entering) {
     tell(log_, LogLevel::kWarning, [&] { return job.name() + " is rejected: " + job.frame->problem; });
 }
 
-/// Of the frames between the last admitted one and that of `turn`.
+/// Number of dropped frames between the last admitted one and that of `turn` that are not among the named ones.
 std::int64_t Intake::droppedUnnamed(const std::vector<MissedFrame>& named, std::int64_t turn) {
   const std::int64_t between = turn - std::exchange(last_turn_, turn) - 1;
   return between -
@@ -170,7 +171,7 @@ void Intake::tellOfLost(const Job& job) {
     });
 }
 
-/// The frame may be one of the few before the first with a corrected time.
+/// Logs a change of the clock. The frame may be one of the few before the first with a corrected time.
 void Intake::tellOfClock(const StereoFrame& frame) {
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   if (ahead_ns == std::exchange(told_ahead_ns_, ahead_ns)) return;

@@ -20,8 +20,8 @@
 
 namespace motorcade {
 
-/// How frames get in: from the producer's thread, by a ring (replay) or a mailbox (live), to the pump, which admits
-/// them one by one into a free job.
+/// The input of frames. The producer's thread pushes them into a ring (replay) or a mailbox (live); the pump takes them
+/// and admits them one by one into a free job.
 class Intake {
  public:
   Intake(const PipelineParams& params, FreeJobs& free_jobs, Entrance& entrance, LogCallback log);
@@ -32,16 +32,16 @@ class Intake {
   /// Any thread: no further frame comes.
   void close();
 
-  /// Pump: the next frame, admitted; waits for a free job first and then for a frame, so that in live it is the newest.
-  /// Null after the last frame, or when `given_up` says that no job will be free any more.
+  /// Pump: admits the next frame and returns it. Waits for a free job first and then for a frame, so that in live it is
+  /// the newest. Null after the last frame, or when `given_up` says that no job will be free any more.
   Job* next(const std::function<bool()>& given_up);
 
-  /// After the end.
+  /// Counts of frames; valid after the end.
   std::int64_t received() const { return received_.load(); }
   std::int64_t dropped() const { return newest_.overwritten() + passed_over_.load(); }
   std::int64_t refused() const { return refused_.load(); }
   std::int64_t late() const { return late_.load(); }
-  /// After the end: frames after the last admitted one that never entered.
+  /// Frames after the last admitted one that never entered; valid after the end.
   std::vector<MissedFrame> missedAtLast();
   /// Any thread: frames in the ring of replay; live keeps one frame at most.
   std::size_t waiting() const { return input_.size(); }
@@ -50,7 +50,7 @@ class Intake {
  private:
   bool live() const { return policy_ == InputPolicy::kLive; }
   Admission judge(StereoFrame frame);
-  /// A frame on its way in, with the number of frames, this one included, that were or could have been dropped by then.
+  /// A frame on its way in. `turn` counts the frames, this one included, that were or could have been dropped by then.
   struct Entering {
     StereoFrame frame;
     std::int64_t turn = 0;
@@ -70,12 +70,12 @@ class Intake {
   Entrance& entrance_;
   LogCallback log_;
 
-  // The ring in replay, the mailbox in live. Missed are frames that were passed over or refused; in live of all
-  // frames, to know those that the mailbox lost. Where there are too many for the ring, the last of them are missing.
+  // Replay uses the ring, live the mailbox. Missed are frames that were passed over or refused. In live they are all
+  // frames, to know those that the mailbox lost. If there are too many for the ring, the last of them are missing.
   SpscRing<Entering> input_;
   Mailbox<Entering> newest_;
   SpscRing<MissedFrame> missed_;
-  // The producer raises the one before it looks at the other: who has closed the input waits for a push that came
+  // The producer raises `entering_` before it looks at `closed_`: whoever closed the input waits for a push that came
   // before.
   std::atomic<bool> entering_{false}, closed_{false};
   std::atomic<std::int64_t> received_{0}, passed_over_{0}, refused_{0}, late_{0};

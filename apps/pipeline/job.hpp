@@ -16,8 +16,8 @@
 
 namespace motorcade {
 
-/// One frame on its way through the stages, with the messages that they have made so far.
-/// Each field has one writer; the graph's edges order writers before readers.
+/// One frame on its way through the stages, with the messages made so far. Each field has one writer; the graph's edges
+/// order writers before readers.
 struct Job {
   std::size_t sequence = 0;          // without gaps, unlike the frame's id
   std::vector<MissedFrame> dropped;  // or refused, since the frame before
@@ -35,7 +35,7 @@ struct Job {
   std::string& problemOf(Stage stage) { return problems[static_cast<std::size_t>(stage)]; }
   /// `frame 12`, for messages.
   std::string name() const { return "frame " + std::to_string(timing.head.frame.value); }
-  /// Lets go of the messages, with their images.
+  /// Releases the messages, with their images.
   void clear() {
     dropped.clear();
     frame.reset();
@@ -48,7 +48,7 @@ struct Job {
   }
 };
 
-/// The tokens: a frame needs a job to enter the flow graph, so that there are never more frames in flight than jobs.
+/// The tokens: a frame needs a job to enter the flow graph, so that no more frames are in flight than there are jobs.
 /// One thread takes jobs, one gives them back.
 class FreeJobs {
  public:
@@ -56,7 +56,7 @@ class FreeJobs {
     for (Job& job : jobs_) giveBack(job);
   }
 
-  /// Waits for a free job; null once closed, or when `given_up` says, asked now and then, that none will come.
+  /// Waits for a free job. Null once closed, or when `given_up`, which is asked now and then, says that none will come.
   template <class GivenUp>
   Job* take(const GivenUp& given_up) {
     constexpr std::chrono::milliseconds kPatience(100);

@@ -6,7 +6,8 @@
 
 namespace motorcade {
 
-/// Fills in how long each object has been followed. Call it in frame order, for online and final estimates apart.
+/// Fills in the time since each object was first followed. Call it in frame order, for online and final estimates
+/// apart.
 class ObjectAges {
  public:
   void fill(FrameEstimate& estimate);

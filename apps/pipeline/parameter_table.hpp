@@ -17,8 +17,7 @@ struct ConfigurationKey {
   std::string key() const { return section + "." + parameter.name; }
 };
 
-/// Every key, bound to the members of `config`: under the section in which it stands in the file. Sections are
-/// contiguous.
+/// Every key, bound to the members of `config`, under its section of the file. Sections are contiguous.
 std::vector<ConfigurationKey> parameterTable(PipelineConfig& config);
 
 }  // namespace motorcade

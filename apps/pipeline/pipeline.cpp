@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// Intake -> pump -> flow graph -> publisher. Jobs go round: the publisher gives them back to the intake.
+/// Intake -> pump -> flow graph -> publisher. Jobs circulate: the publisher gives them back to the intake.
 class Pipeline::Impl {
  public:
   Impl(const PipelineParams& params, Stages stages, const LogCallback& log);
@@ -53,7 +53,7 @@ Pipeline::Impl::Impl(const PipelineParams& params, Stages stages, const LogCallb
 
 Pipeline::Impl::~Impl() { abandon(); }
 
-/// What is in flight comes out at once, but for the stages at work.
+/// Lets the jobs in flight come out at once, but for the stages at work.
 void Pipeline::Impl::abandon() {
   graph_.abandon();
   stop();
@@ -97,7 +97,7 @@ PipelineEnd Pipeline::Impl::finish() {
   return end;
 }
 
-/// In the order of the data.
+/// High-water marks of the queues in the order of the data.
 std::vector<QueueMark> Pipeline::Impl::queues() const {
   const std::int64_t bound = params_.frames_in_flight;
   std::vector<QueueMark> marks = graph_.queues(bound);

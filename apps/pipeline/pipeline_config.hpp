@@ -31,7 +31,7 @@ struct BackendParams {
   FilterBackend::Params filter;
 };
 
-/// Every parameter of a run, those of each stage. What a user may set has a key in the configuration file.
+/// All parameters of a run, by stage. Those that a user may set have a key in the configuration file.
 struct PipelineConfig {
   ImageLimits input;
   PipelineParams pipeline;

@@ -24,8 +24,8 @@ std::vector<Parameter> parametersOf(PipelineParams& params);
 
 /// Capacity of the rings at both ends. Rings round up to a power of two: this much stays within the bound.
 std::size_t ringCapacity(const PipelineParams& params);
-/// Frames that may be in the flow graph at once. In live, frames beyond those that the workers can work on would only
-/// grow old between the stages.
+/// Most frames in the flow graph at once. In live, frames beyond those that the workers can work on would only grow old
+/// between the stages.
 std::size_t tokens(const PipelineParams& params);
 
 }  // namespace motorcade

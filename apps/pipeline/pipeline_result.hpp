@@ -9,7 +9,7 @@
 #include "core/latency_histogram.hpp"
 #include "core/messages.hpp"
 
-/// What a pipeline gives to its consumer: a result per frame, and a summary at the end.
+/// Results of a pipeline for its consumer: one per frame, and a summary at the end.
 namespace motorcade {
 
 /// One processed or rejected frame, published in frame order. Owns its facts: no image stays alive through it.
@@ -39,7 +39,7 @@ struct QueueDepth {
   std::int64_t waiting = 0, bound = 0;
 };
 
-/// Where a pipeline stands while it works.
+/// Progress of a pipeline while it works.
 struct PipelineState {
   std::int64_t received = 0;
   std::vector<QueueDepth> queues;  // in the order of the data

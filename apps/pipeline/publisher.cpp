@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// What went wrong with the frame, in the order of the stages; the job forgets it.
+/// Takes the problems of the frame out of the job, in the order of the stages.
 std::string takeProblems(Job& job) {
   std::string text = job.frame->problem;
   for (std::string& problem : job.problems)
@@ -65,7 +65,7 @@ PipelineResult Publisher::resultOf(Job& job) {
   return result;
 }
 
-/// A frame that leaves the window earlier is final by then.
+/// Settled estimates; a frame that leaves the window earlier is final by then.
 std::vector<FrameEstimate> Publisher::settledOf(const Estimates& estimates) {
   std::vector<FrameEstimate> settled = estimates.settled;
   if (!settled.empty()) last_settled_ = settled.back().head.frame;

@@ -13,14 +13,14 @@
 
 namespace motorcade {
 
-/// How results get out: copies the facts of a finished job, hands them to the consumer and gives the job back.
+/// The output of results: copies the facts of a finished job, hands them to the consumer and gives the job back.
 class Publisher {
  public:
   Publisher(const PipelineParams& params, FreeJobs& free_jobs);
 
-  /// In frame order; waits while the consumer is behind.
+  /// Publishes a job. Call it in frame order; it waits while the consumer is behind.
   void publish(Job& job);
-  /// No further result comes, or none will be taken.
+  /// Closes the results: no further one comes, or none will be taken.
   void close() { results_.close(); }
 
   /// Consumer: the next result, waiting for it; empty after the last one.
@@ -28,9 +28,9 @@ class Publisher {
   /// Consumer: the next result if there is one already.
   std::optional<PipelineResult> poll() { return results_.tryPop(); }
 
-  /// After the last `publish`: the estimates of frames that came after it and never entered.
+  /// Estimates of the frames that came after the last `publish` and never entered.
   std::vector<FrameEstimate> lastDropped(const std::vector<MissedFrame>& frames) { return gaps_.fill(frames); }
-  /// After `lastDropped`: all frames that are not final yet, oldest first. `last` are the back-end's.
+  /// All frames that are not final yet, oldest first; call it after `lastDropped`. `last` are the back-end's.
   std::vector<FrameEstimate> lastFinals(const std::vector<FrameEstimate>& last);
   const PipelineSummary& summary() const { return summary_; }
   /// Any thread: results that were not taken yet.

@@ -35,7 +35,7 @@ EstimatesPtr RestartingBackend::estimate(const FrameMeasurementsPtr& measurement
     estimates = std::make_shared<const Estimates>(std::move(moved));
   }
   window_.push_back(estimates->online);
-  // From here on nothing fails: the estimates are on their way.
+  // Nothing may fail from here on: the estimates are on their way.
   window_.erase(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(std::min(final_now, window_.size())));
   left_.clear();
   T_world_cam_ = estimates->online.T_world_cam;
@@ -57,8 +57,8 @@ std::vector<FrameEstimate> RestartingBackend::finish() {
   return finals;
 }
 
-/// Covariances are relative to the camera and stay, but for that of its own pose: the new start is not where the old
-/// world was.
+/// Moves an estimate to the world. Covariances are relative to the camera and stay, but for that of its own pose: the
+/// new start differs from the old world's.
 void RestartingBackend::moveToWorld(FrameEstimate& estimate) const {
   if (!restarted_) return;
   estimate.T_world_cam = T_world_start_ * estimate.T_world_cam;

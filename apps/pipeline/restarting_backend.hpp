@@ -10,9 +10,9 @@
 
 namespace motorcade {
 
-/// A back-end that begins anew after an exception, which may have left it in the middle of an update: the frame is
-/// lost, the last estimates of the frames in its window are their final ones, and the new one goes on from where the
-/// camera is by its odometry.
+/// A back-end that starts anew after an exception, which may have left it in the middle of an update. The frame is
+/// lost. The last estimates of the frames in its window become their final ones. The new back-end starts at the
+/// camera's pose by odometry.
 class RestartingBackend final : public Backend {
  public:
   explicit RestartingBackend(std::function<std::unique_ptr<Backend>()> make);

@@ -7,18 +7,19 @@
 
 namespace motorcade {
 
-/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait for anybody, but that the
-/// second may where a replay is to wait for what is written.
+/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait. Only the second may in a
+/// replay that has to wait for a writer.
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// On the thread of the replay: a pair has gone into the pipeline. Its images belong to a pool; keep few of them.
+  /// Called on the thread of the replay when a pair has gone into the pipeline. Its images belong to a pool; keep few
+  /// of them.
   virtual void frameEntered(const StereoFrame& frame) = 0;
-  /// On the thread that takes the results, in frame order.
+  /// Called on the thread that takes the results, in frame order.
   virtual void frameLeft(const PipelineResult& result) = 0;
 };
 
-/// Those of a run, which owns none of them.
+/// The listeners of a run, which owns none of them.
 using RunListeners = std::vector<RunListener*>;
 
 }  // namespace motorcade

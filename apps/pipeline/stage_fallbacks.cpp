@@ -13,7 +13,7 @@ std::shared_ptr<const Message> shared(Message message) {
   return std::make_shared<const Message>(std::move(message));
 }
 
-/// A stage failed that the frame's pose depends on.
+/// Head of a frame that is lost, as a stage failed on which its pose depends.
 FrameHead lost(FrameHead head) {
   head.status = FrameStatus::kLost;
   head.cause = FrameCause::kFailed;

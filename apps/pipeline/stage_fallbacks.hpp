@@ -5,7 +5,7 @@
 #include "core/messages.hpp"
 #include "frontend/messages.hpp"
 
-/// What stands in for the message of a stage that threw: the same as the stage gives for a frame without images or
+/// Messages that replace those of a stage that threw. They equal the stage's messages for a frame without images or
 /// without an ego-motion, so that later stages meet nothing new.
 namespace motorcade {
 
@@ -17,7 +17,7 @@ OpticalFlowPtr noFlow(const FeaturesPtr& features);
 SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_now);
 /// The camera's motion without objects.
 FrameMeasurementsPtr cameraAlone(const SceneMotion& motion);
-/// Without a pose: who publishes it knows the last pose, and predicts.
+/// Estimates without a pose. The publisher knows the last pose, and predicts.
 EstimatesPtr lostEstimates(const FrameMeasurements& measurements);
 
 }  // namespace motorcade

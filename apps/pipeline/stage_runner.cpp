@@ -15,7 +15,7 @@
 namespace motorcade {
 namespace {
 
-/// Calls `work`; what it threw in words, empty when nothing.
+/// Calls `work` and returns its exception in words, empty for none.
 template <class Work>
 std::string exceptionOf(const Work& work) {
   try {
@@ -40,7 +40,7 @@ void nameProblem(Job& job, Stage stage, const std::string& problem) {
 
 StageRunner::StageRunner(Stages stages, LogCallback log) : stages_(std::move(stages)), log_(std::move(log)) {}
 
-/// Isolated, so that a stage that waits for its own parallel loop does not begin with a later frame meanwhile.
+/// Runs a stage in isolation: while it waits for its own parallel loop it must not begin with a later frame.
 template <class Run, class Fallback>
 auto StageRunner::attempt(Job& job, Stage stage, const Run& run, const Fallback& fallback) {
   StageSpan& span = job.timing.of(stage);

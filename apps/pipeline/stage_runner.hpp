@@ -10,9 +10,9 @@
 
 namespace motorcade {
 
-/// The pipeline's frame boundary: runs a stage on a job and notes when. A stage that throws costs its frame, not the
-/// run: the exception is logged and noted in the job, and a fallback stands in for the stage's message. Each
-/// function has the call rule of its stage, see `Stages`.
+/// The pipeline's frame boundary: runs a stage on a job and notes its times. A stage that throws costs its frame, not
+/// the run. The exception is logged and noted in the job, and a fallback replaces the stage's message. Each function
+/// has the call rule of its stage, see `Stages`.
 class StageRunner {
  public:
   StageRunner(Stages stages, LogCallback log);
@@ -24,7 +24,7 @@ class StageRunner {
   void trackObjects(Job& job);
   void optimize(Job& job);
   void shapeObjects(Job& job);
-  /// After the last frame: the estimates that are still in the window.
+  /// The estimates that are still in the window; call it after the last frame.
   std::vector<FrameEstimate> finish();
 
  private:

@@ -26,7 +26,7 @@ std::shared_ptr<const FeaturePreparation> makePreparation(const FeaturePreparati
   throw UsageError(error.what());
 }
 
-/// Throws where an image is missing or has not the size that the camera says.
+/// Throws where an image is missing or its size differs from the camera's.
 void requireImages(const StereoFrame& frame, const StereoCamera& camera) {
   const auto require = [&](const Image& image, const std::string& side) {
     if (image.empty()) throw std::invalid_argument("the " + side + " image is missing");

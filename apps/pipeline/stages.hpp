@@ -12,9 +12,10 @@ namespace motorcade {
 
 struct PipelineConfig;
 
-/// What the flow graph wires together, so that it can be tested with toy stages. `prepare` and `stereo_matching` are
-/// called for several frames at once; the others one frame at a time, in order. `finish` is called once, after the last
-/// frame. Each call gives one message; a stage that throws costs its frame, not the run.
+/// The stages that the flow graph wires together. They are functions, so that the graph can be tested with toy stages.
+/// `prepare` and `stereo_matching` are called for several frames at once; the others one frame at a time, in order.
+/// `finish` is called once, after the last frame. Each call gives one message; a stage that throws costs its frame, not
+/// the run.
 struct Stages {
   std::function<FeaturesPtr(const StereoFramePtr&)> prepare;
   std::function<StereoMatchesPtr(const FeaturesPtr&)> stereo_matching;
@@ -26,8 +27,8 @@ struct Stages {
   std::function<std::vector<FrameEstimate>()> finish;
 };
 
-/// The real stages, for a camera whose images have the size that it says. Throws std::invalid_argument on a bad
-/// parameter, UsageError where the detector's module is missing.
+/// The real stages, for a camera and images of its size. Throws std::invalid_argument on a bad parameter, UsageError
+/// where the detector's module is missing.
 Stages makeStages(const PipelineConfig& config, const StereoCamera& camera);
 
 }  // namespace motorcade

@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// How many names a key on this line may have at most: dots, those in a row counting once.
+/// Upper bound of the names in a key on this line: its dots, where several in a row count once.
 int namesOn(std::string_view line) {
   int names = 0;
   char before = '.';
@@ -21,8 +21,8 @@ int namesOn(std::string_view line) {
   return names;
 }
 
-/// Refuses what toml++ cannot stand: letters beyond ASCII in a key (undefined behavior in 3.3), tables one in the other
-/// by the thousand, which overflow the stack, and headers whose name begins with what no name may begin with.
+/// Refuses input that toml++ cannot handle. Letters beyond ASCII in a key are undefined behavior in 3.3. Tables nested
+/// by the thousand overflow the stack. Headers must not begin with a character that begins no name.
 void requireParsable(std::string_view line, const TomlPosition& position) {
   constexpr int kMostNames = 100;  // our keys have three
   const auto begins_name = [](unsigned char c) {
@@ -37,7 +37,8 @@ void requireParsable(std::string_view line, const TomlPosition& position) {
   if (line.empty() || !begins_name(line.front())) failAt(position, "a section's name must begin with a letter");
 }
 
-/// The line that an assertion of the parser is about. It reads from left to right: what ends before holds.
+/// The line on which an assertion of the parser fails. The parser reads from left to right, so that any shorter prefix
+/// holds.
 toml::source_index lineOfAssertion(std::string_view toml) {
   std::vector<std::size_t> ends;
   for (std::size_t end = toml.find('\n'); end != std::string_view::npos; end = toml.find('\n', end + 1))

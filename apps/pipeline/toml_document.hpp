@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-// What toml++ takes for granted is an assertion without NDEBUG, with it undefined behavior; and version 3.3 errs, in
-// times of day for one.
+// toml++ asserts its assumptions without NDEBUG; with it, a wrong one is undefined behavior. Version 3.3 has wrong
+// ones, as in times of day.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 namespace motorcade {
@@ -19,7 +19,7 @@ namespace motorcade {
 /// TOML as people write it. toml++ takes long to compile: include this in few sources.
 namespace motorcade {
 
-/// Where a value stands, for messages.
+/// Position of a value, for messages.
 struct TomlPosition {
   std::string file;
   toml::source_index line = 0;

@@ -34,7 +34,7 @@ WorkerTeam::~WorkerTeam() {
   for (const auto& seat : seats_) letGo(*seat);
 }
 
-/// A frame wants all workers until its tail; and each frame beyond the first does, until one is finished.
+/// A frame wants all workers until its tail. Each frame beyond the first also does, until one is finished.
 void WorkerTeam::expect() {
   for (const auto& seat : seats_) {
     seat->alone.add();
@@ -63,8 +63,8 @@ void WorkerTeam::finish() {
   }
 }
 
-/// The leader sees how the graph ends from then on, as the frames that it waits for may never be finished. One that
-/// does not lead yet need not be let go of: it sees that the team is closed.
+/// Lets the leader go, which from then on watches how the graph ends: the frames that it waits for may never be
+/// finished. A leader that does not lead yet sees that the team is closed.
 void WorkerTeam::close() {
   closed_ = true;
   if (Seat* const seat = leader_) letGo(*seat);
@@ -76,8 +76,8 @@ void WorkerTeam::letGo(Seat& seat) {
   seat.alone.dropAll();
 }
 
-/// Of those who are not wanted any more, one stays until the last frame is finished: a thread that has just worked on
-/// a frame.
+/// Works while all workers are wanted. Afterwards one thread that has just worked on a frame stays until the last frame
+/// is finished.
 void WorkerTeam::work() {
   occupy();
   Seat& seat = *seats_[thisSeat()];
@@ -96,7 +96,8 @@ void WorkerTeam::lead(flow::graph& graph) {
   graph.wait_for_all();
 }
 
-/// Nothing may leave the thread: what goes wrong here is no frame's, and the others work on without it.
+/// No exception may leave the thread. An error here belongs to no frame, and the other threads work on without this
+/// one.
 void WorkerTeam::help(const std::stop_token& stopped) try {
   const PlacedThread placed(placement_);
   const std::stop_callback wake(stopped, [this] { call(); });

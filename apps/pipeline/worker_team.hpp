@@ -15,34 +15,35 @@
 
 namespace motorcade {
 
-/// The threads that work on the frames in a flow graph: its own, in the slots of its arena, and none of oneTBB's, which
-/// come from other arenas and go to them. While there is nothing to do they sleep, and do not look for work first, as
-/// oneTBB's would for milliseconds; a call wakes all of them at once. A frame that is alone keeps all of them until it
-/// comes to stages that one thread does alone.
+/// The threads that work on the frames in a flow graph. They are its own, in the slots of its arena. oneTBB's threads
+/// take no part, as they come from other arenas and go to them. When there is nothing to do they sleep at once, while
+/// oneTBB's would look for work for milliseconds; a call wakes all of them. A frame that is alone keeps all of them
+/// until it comes to stages that one thread does alone.
 class WorkerTeam {
  public:
   /// Starts all but the leader. `arena` has `workers` slots, all of them reserved for threads that enter it.
   WorkerTeam(oneapi::tbb::task_arena& arena, int workers, const ThreadPlacement& placement);
-  /// After the leader has come back and the last call.
+  /// Runs after the last call, when the leader has returned.
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
-  /// From one thread, before and after a frame is put into the graph.
+  /// Called by one thread before and after a frame is put into the graph.
   void expect();
   void call();
-  /// In a thread of the team: what is left of a frame is one thread's work; all of a frame is done.
+  /// Called by a thread of the team: the rest of a frame is one thread's work (`reachTail`), or the frame is done
+  /// (`finish`).
   void reachTail();
   void finish();
-  /// No further call comes; from any thread, also before the leader is at work.
+  /// Ends the calls; from any thread, also before the leader is at work.
   void close();
   /// Leader, in the arena: works on the graph until it is closed and all is done. Throws what a node threw.
   void lead(oneapi::tbb::flow::graph& graph);
-  /// A thread of the team begins with something.
+  /// Called when a thread of the team begins with work.
   void occupy() { spread_.occupy(thisSeat()); }
 
  private:
-  /// What a worker waits for: a graph without nodes, which is held as long as it shall work.
+  /// The condition that a worker waits for: a graph without nodes, which is held as long as the worker shall work.
   class Hold {
    public:
     void add();

@@ -13,8 +13,8 @@ constexpr std::size_t kLeastSteps = 5;  // of a part of a track, among which a s
 
 Eigen::Vector3d wayBetween(const StampedPlace& from, const StampedPlace& to) { return to.p_world - from.p_world; }
 
-/// True when a part of a track covers enough way, fast enough, and by more than a jump: no step has half of the way
-/// more than its share of the time.
+/// True when a part of a track is long enough, fast enough, and more than a jump: no step exceeds its share of the time
+/// by more than half of the way.
 bool goesAway(std::span<const StampedPlace> part) {
   constexpr double kJump = 0.5;
   const Eigen::Vector3d way = wayBetween(part.front(), part.back());

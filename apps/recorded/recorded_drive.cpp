@@ -44,7 +44,7 @@ std::string nameOf(const std::filesystem::path& folder) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-/// `stamps`: of the run's frames, at least as many as it has poses, or the last poses are left out.
+/// Builds a drive. `stamps` are those of the run's frames; poses beyond them are left out.
 RecordedDrive driveOf(const RunFolder& run, std::vector<Timestamp> stamps) {
   RecordedDrive drive;
   drive.name = nameOf(run.folder);

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr double kUsualRate_hz = 10;
 
-/// An object without keys where there is no summary, or none that can be read.
+/// The summary, or an object without keys if there is none that can be read.
 Json summaryOf(const RunFolder& run) {
   Json json = jsonOrDiscarded(run.summary_json);
   return json.is_object() ? json : Json::object();
@@ -76,14 +76,14 @@ bool timesAreTheCameras(const Json& summary) {
   return !summary.empty() && textOf(summary, "inject").find("jump") == std::string::npos;
 }
 
-/// From the frame to one beside it.
+/// Time from the frame to one beside it.
 std::int64_t interval_ns(const Sequence& sequence, std::size_t frame) {
   if (sequence.stamps.size() < 2) return 0;
   const std::size_t earlier = std::max<std::size_t>(frame, 1) - 1;
   return sequence.stamps[earlier + 1].ns - sequence.stamps[earlier].ns;
 }
 
-/// Whether most frames of the run were taken when those of the sequence were.
+/// True when most frames of the run have the capture times of the sequence's frames.
 bool timesFit(const RunFolder& run, const Sequence& sequence) {
   std::int64_t compared = 0, fitting = 0;
   for (const auto& row : run.frames) {

@@ -45,7 +45,7 @@ class LineOverFrames {
   std::int64_t last_ = 0;
 };
 
-/// From the world onto the map: its x axis along the drive, its y axis to the left of that.
+/// Axes of the map in the world: x along the drive, y to the left of it.
 Eigen::Matrix<double, 2, 3> mapAxes(const std::vector<SE3>& path) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const SE3& pose : path) mean += Eigen::Vector2d(pose.translation().x(), pose.translation().z());
@@ -144,7 +144,7 @@ std::string driveMap(const ReportedRun& reported) {
           std::string(others.empty() ? "." : "; " + others + ", moved onto the camera's path as a whole."));
 }
 
-/// Of each label at each of its frames, over the frames around it.
+/// Speeds of a label by frame, as central differences over the frames around each.
 std::map<std::int64_t, double> trueSpeeds_mps(const RecordedDrive& drive, std::int64_t label) {
   std::map<std::int64_t, Eigen::Vector3d> places;
   for (const auto& [frame, objects] : drive.true_objects)
@@ -191,7 +191,7 @@ std::string speedChart(const ReportedRun& reported, std::int64_t track) {
   return chartFigure(lineChart({.x = "s", .y = "speed, m/s"}, lines), caption);
 }
 
-/// The tracks with most rows, in the order of their ids.
+/// The tracks with the most rows, in the order of their ids.
 std::vector<std::int64_t> longestTracks(const RecordedDrive& drive) {
   std::vector<std::pair<std::size_t, std::int64_t>> by_length;
   for (const auto& [track, rows] : rowsByTrack(drive))

@@ -20,7 +20,8 @@ std::vector<FrameRow> enteredRows(const RunFolder& run) {
   return rows;
 }
 
-/// `paced`: latencies count from when a pair was due; else they are mostly waiting, which the stages' work is without.
+/// Histogram of latencies if they are `paced`, which count from when a pair was due. Otherwise latencies are mostly
+/// waiting, and it shows the stages' work.
 std::string histogram(const std::vector<FrameRow>& rows, bool paced) {
   const auto time_ms = [paced](const FrameRow& row) { return paced ? row.latency_ms : processing_ms(row); };
   double longest_ms = 0;
@@ -38,8 +39,8 @@ std::string histogram(const std::vector<FrameRow>& rows, bool paced) {
               "(no --rate), so that their latency, in the table below, is mostly queueing.");
 }
 
-/// Where each stretch of a frame's way counts: waits are one part, stereo matching and optical flow, of which only the
-/// longer is on the way, two.
+/// Parts of the timeline. All waits are one part. Stereo matching and optical flow are two, of which only the longer is
+/// on a frame's path.
 struct Timeline {
   std::vector<ChartPart> parts;
   std::size_t partOf(const std::string& name) const {
@@ -56,7 +57,7 @@ Timeline timelineParts() {
   return timeline;
 }
 
-/// A bar per frame; of long runs, per group of frames the slowest.
+/// A bar per frame; for long runs, the slowest frame of each group.
 std::string stageTimeline(const std::vector<FrameRow>& rows) {
   const Timeline timeline = timelineParts();
   const std::size_t group = std::max<std::size_t>(1, (rows.size() + kTimelineBars - 1) / kTimelineBars);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPictures = 4;
 constexpr int kQuality = 78;  // of JPEG
 
-/// Of each quarter of the drive the frame with the most objects, the earliest of equals.
+/// The frame with the most objects in each quarter of the drive, the earliest of equals.
 std::vector<std::size_t> chosenFrames(const RecordedDrive& drive) {
   const std::size_t frames = drive.T_world_cam.size();
   std::set<std::size_t> chosen;

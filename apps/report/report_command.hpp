@@ -12,7 +12,7 @@ struct ReportOptions {
   std::filesystem::path baseline{};    // camera poses to compare with; empty for none
 };
 
-/// Writes a page that tells of a run, in one file that needs no other; gives the exit code. Failures are UserErrors.
+/// Writes a page about a run, in one file that needs no other; returns the exit code. Failures are UserErrors.
 int runReport(const ReportOptions& options);
 
 }  // namespace motorcade

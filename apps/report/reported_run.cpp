@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// A report of a run whose images are elsewhere by now still tells of the rest.
+/// Finds the sequence. Without it, as when the images have moved, a report still tells the rest.
 void findSequence(ReportedRun& reported, const ReportOptions& options) {
   try {
     reported.sequence = openSequenceOf(reported.run, {options.sequence, options.fps_hz});
@@ -18,7 +18,7 @@ void findSequence(ReportedRun& reported, const ReportOptions& options) {
   }
 }
 
-/// The truth may not tell of the frames that were run.
+/// Evaluates the run. The truth may lack the frames that were run.
 void measure(ReportedRun& reported, const ReportOptions& options) {
   EvaluateOptions evaluate;
   evaluate.run = options.run;
@@ -33,7 +33,7 @@ void measure(ReportedRun& reported, const ReportOptions& options) {
   }
 }
 
-/// Moved into the run's world, which is its first camera.
+/// Moves poses into the run's world, which is its first camera.
 std::vector<SE3> fromFirst(std::vector<SE3> poses) {
   if (poses.empty()) return poses;
   const SE3 T_run_world = poses.front().inverse();

@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// All that a report tells of.
+/// The data of a report.
 struct ReportedRun {
   RunFolder run;
   std::optional<Sequence> sequence{};      // empty where it is no longer there
@@ -22,7 +22,7 @@ struct ReportedRun {
   std::vector<SE3> baseline{};             // poses in the run's world; may be empty
 };
 
-/// Throws InputError where the run cannot be read, or what the user named.
+/// Throws InputError if the run, or a file that the user named, cannot be read.
 ReportedRun readReportedRun(const ReportOptions& options);
 
 }  // namespace motorcade

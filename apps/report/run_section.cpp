@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// An object without keys where there is no summary that can be read.
+/// The summary, or an object without keys if it cannot be read.
 Json summaryOf(const RunFolder& run) {
   Json json = jsonOrDiscarded(run.summary_json);
   return json.is_object() ? json : Json::object();
@@ -51,7 +51,7 @@ std::string framesText(const ReportedRun& reported) {
                      : fmt::format("{} frames, {} lost, rejected or dropped", frames, unsure);
 }
 
-/// A latency tells of the program only where pairs were due at a pace; else it is how long they queued.
+/// Shows the latency if pairs were due at a pace. Otherwise it is mostly queueing.
 std::string timeCard(const ReportedRun& reported, const Json& summary) {
   const auto latency = summary.find("latency_ms");
   if (wasPaced(reported.run) && latency != summary.end() && latency->contains("p99"))
@@ -64,7 +64,7 @@ std::string timeCard(const ReportedRun& reported, const Json& summary) {
               "processing of a pair, without waiting, 99 of 100 frames");
 }
 
-/// Nothing where the cameras stand still against each other, and for runs that tell nothing of it.
+/// Empty if the cameras do not shake against each other, and for runs that do not record it.
 std::string shakeCard(const Json& summary) {
   const double shake_px = summary.value(Json::json_pointer("/solver/disparity_shake_px"), 0.0);
   if (shake_px < kLeastToldShake_px) return "";

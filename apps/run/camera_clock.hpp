@@ -8,7 +8,8 @@
 
 namespace motorcade {
 
-/// When each pair of a replayed drive is due. It starts once, with the first pair; from then on any thread may ask.
+/// Times at which the pairs of a replayed drive are due. It starts once, with the first pair; from then on any thread
+/// may ask.
 class CameraClock {
  public:
   /// `pace` is the number of captured seconds per second of replay, `period_s` the capture's mean period.
@@ -18,7 +19,7 @@ class CameraClock {
     first_ = first;
     origin_.store(now.time_since_epoch().count(), std::memory_order_release);
   }
-  /// Everything that is still to come is due later, as the replay was held.
+  /// Delays all further pairs, as the replay was held.
   void postpone(SteadyTime::duration held) { origin_.fetch_add(held.count(), std::memory_order_acq_rel); }
   bool started() const { return origin_.load(std::memory_order_acquire) != 0; }
 
@@ -28,7 +29,7 @@ class CameraClock {
     return origin + replayed(secondsBetween(first_, stamp));
   }
 
-  /// True when a camera that does not wait has the next pair already.
+  /// True when a camera that does not wait has already captured the next pair.
   bool overtaken(Timestamp stamp, SteadyTime now) const { return started() && now >= due(stamp) + replayed(period_s_); }
 
  private:

@@ -55,14 +55,14 @@ void Feeder::feed(const std::stop_token& stopped) {
   pipeline_.close();
 }
 
-/// Pairs are due later by as long as the replay was held.
+/// Waits while the replay is held, and makes further pairs due later by as long.
 void Feeder::passGate(const std::stop_token& stopped) {
   if (!gate_) return;
   const auto held = gate_->pass(stopped);
   if (clock_ && clock_->started()) clock_->postpone(held);
 }
 
-/// Tells first of the pairs before it that the source left out.
+/// Enters a frame, after passing over the pairs before it that the source left out.
 bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
   for (; next_ < frame.head.frame; ++next_.value) {
     const Timestamp stamp = source_.stampOf(next_);
@@ -72,7 +72,7 @@ bool Feeder::enter(StereoFrame frame, const std::stop_token& stopped) {
   return faults_ ? faults_->give(std::move(frame), pipelineAfterFaults(stopped)) : push(std::move(frame));
 }
 
-/// The pair enters first, so that looking at it does not delay it. One that is late is ignored there, and so here.
+/// Pushes the pair before looking at it, so that it is not delayed. The pipeline and the watch ignore a late pair.
 bool Feeder::push(StereoFrame frame) {
   const StereoFrame seen = frame;
   const Admission admission = pipeline_.push(std::move(frame));

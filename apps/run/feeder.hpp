@@ -16,7 +16,7 @@ namespace motorcade {
 /// when it is due; without, as soon as there is room.
 class Feeder {
  public:
-  /// What may stand between source and pipeline; each may be absent.
+  /// Parts that may stand between source and pipeline; each may be absent.
   struct Between {
     CameraClock* clock = nullptr;     // started with the first pair
     FaultInjector* faults = nullptr;  // change the pairs on their way
@@ -26,10 +26,10 @@ class Feeder {
   };
   /// Pairs that the source leaves out are passed over.
   Feeder(PairSource& source, Pipeline& pipeline, const Between& between);
-  /// Closes the pipeline too, so that the thread never waits for room in it.
+  /// Closes the pipeline, too, so that the thread never waits for room in it.
   ~Feeder();
 
-  /// No further pair enters; from any thread.
+  /// Lets no further pair enter; from any thread.
   void stop();
 
  private:

@@ -8,14 +8,16 @@
 
 namespace motorcade {
 
-/// Counts the good frames of a run, and remembers why others are not.
+/// Counts the good frames of a run, and keeps the reason why others are not good.
 class FollowedFrames {
  public:
   void observe(const PipelineResult& result);
   std::int64_t count() const { return count_; }
-  /// No motion was measured, while there were frames: the first one alone has none, and is good all the same.
+  /// True when no motion was measured although there were frames. The first frame alone has none, and is good all the
+  /// same.
   bool none(const PipelineSummary& summary) const;
-  /// A sentence on such a run: how many frames there were, what became of most of them, and why of the first of those.
+  /// A sentence on such a run: the number of frames, the outcome of most of them, and the reason for the first of
+  /// those.
   std::string whyNone(const PipelineSummary& summary) const;
 
  private:

@@ -24,7 +24,7 @@ std::optional<Band> bandOf(std::string_view item) {
   return Band{side, item.substr(equals + 1)};
 }
 
-/// At least one, and less than all that there are.
+/// Reads a number of pixels: at least one, and less than all.
 int pixelsOf(const Band& band, int all, const std::string& item) {
   int pixels = 0;
   const auto [end, error] = std::from_chars(band.pixels.begin(), band.pixels.end(), pixels);

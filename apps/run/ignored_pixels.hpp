@@ -8,8 +8,9 @@
 
 namespace motorcade {
 
-/// The pixels of the left image that `run --ignore` names: each item is SIDE=PIXELS, so many rows or columns at a side,
-/// or the file of an image of the camera's size that is not black there. Throws UsageError or InputError.
+/// The pixels of the left image that `run --ignore` names. An item is SIDE=PIXELS, a number of rows or columns at a
+/// side. It may also be the file of an image of the camera's size, in which ignored pixels are not black. Throws
+/// UsageError or InputError.
 PixelMask ignoredPixels(const std::vector<std::string>& items, const StereoCamera& camera);
 
 }  // namespace motorcade

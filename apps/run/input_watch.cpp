@@ -11,7 +11,8 @@ bool InputWatch::admits(const StereoFrame& pair) {
   return !refused_;
 }
 
-/// The finding "points" (the whole drive shows none) refuses nothing: the run itself counts the frames it followed.
+/// Logs the findings. "points" (the whole drive shows none) refuses nothing: the run itself counts the frames it
+/// followed.
 void InputWatch::tell(const std::vector<RigFinding>& found) {
   for (const RigFinding& each : found) {
     found_.push_back(each);

@@ -8,19 +8,19 @@
 
 namespace motorcade {
 
-/// Looks at the pairs of a run as they enter, and logs what is wrong with them, each once.
+/// Looks at the pairs of a run as they enter, and logs each fault once.
 class InputWatch {
  public:
-  /// With `force` the run goes on where its results would be worthless.
+  /// Creates a watch; with `force` the run goes on even if its results would be worthless.
   InputWatch(const StereoCamera& camera, bool force) : watch_(camera), force_(force) {}
 
-  /// Takes the pairs in order; false from when it is known that results would be worthless.
+  /// Takes the pairs in order. Returns false as soon as results are known to be worthless.
   bool admits(const StereoFrame& pair);
-  /// Logs what is found if the run ended before enough pairs were seen; call it after the last pair.
+  /// Logs the findings if the run ended before enough pairs were seen; call it after the last pair.
   void finish() { tell(watch_.finish()); }
-  /// The run was, or should have been, ended.
+  /// True when the run was, or should have been, ended.
   bool refused() const { return refused_; }
-  /// All that was found, in the order of the frames.
+  /// All findings, in the order of the frames.
   const std::vector<RigFinding>& found() const { return found_; }
 
  private:

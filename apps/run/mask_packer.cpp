@@ -38,7 +38,7 @@ std::string headerOf(int width_px, int height_px) {
   return header += kGrayOf16Bits;
 }
 
-/// Whether a row equals the one above; above the first there are zeros.
+/// True when a row equals the one above; above the first there are zeros.
 bool isRepeated(const Gray16Image& mask, int row) {
   const auto start = mask.pixels.begin() + std::ptrdiff_t{row} * mask.width, end = start + mask.width;
   if (row == 0) return std::all_of(start, end, [](std::uint16_t value) { return value == 0; });
@@ -56,7 +56,7 @@ void writeRow(const std::uint16_t* values, const std::uint16_t* above, int width
 
 }  // namespace
 
-/// Makes parts of a stream of deflate that do not look back into each other.
+/// Makes independent parts of a deflate stream.
 class PartPacker {
  public:
   /// `level` as zlib counts them: 1 is fast, 9 packs best.

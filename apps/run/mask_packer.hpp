@@ -12,8 +12,8 @@ namespace motorcade {
 class PartPacker;
 
 /// Packs masks of one size as PNG files. Most of a mask's rows equal the row above, as cells are up to four pixels high
-/// and no object reaches over the whole image: what zlib makes of such rows is kept and repeated. That takes a quarter
-/// of the time in which libpng packs the same image.
+/// and no object reaches over the whole image. The deflated form of such rows is kept and repeated. That takes a
+/// quarter of the time in which libpng packs the same image.
 class MaskPacker {
  public:
   MaskPacker(int width_px, int height_px);
@@ -21,11 +21,11 @@ class MaskPacker {
   MaskPacker(const MaskPacker&) = delete;
   MaskPacker& operator=(const MaskPacker&) = delete;
 
-  /// The bytes of a 16-bit gray PNG; of the size that was given first.
+  /// Packs a mask as the bytes of a 16-bit gray PNG. All masks have the size of the first.
   std::string operator()(const Gray16Image& mask);
 
  private:
-  /// A part of the stream that stands for itself, wherever it is put.
+  /// A part of the stream that does not refer to others, so that it may stand anywhere.
   struct Part {
     std::string packed;
     std::size_t unpacked_bytes;

@@ -7,11 +7,11 @@
 namespace motorcade {
 namespace {
 
-/// Frames that wait for their result, and results that wait to be written: a small part of a second with images, some
-/// seconds without, when a disk stalls.
+/// Frames that wait for their result, and results that wait to be written. Those with images span a fraction of a
+/// second, those without some seconds, when a disk stalls.
 constexpr std::size_t kMostImages = 32, kMostWaitingWithImage = 8, kMostWaiting = 64;
-/// A pair is announced just after it has entered, which its result may overtake by as much as the system delays a
-/// thread.
+/// Longest wait for a pair's announcement. It comes just after the pair has entered. Its result may overtake it by as
+/// much as the system delays a thread.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
 
 }  // namespace
@@ -83,7 +83,7 @@ void McapRecorder::writeAll(const std::stop_token& stopped) {
   changed_.notify_all();
 }
 
-/// Nothing when the end has come.
+/// The next frame to write; empty at the end.
 std::optional<McapRecorder::Waiting> McapRecorder::next(const std::stop_token& stopped) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, stopped, [&] { return !waiting_.empty() || ending_; });
@@ -95,7 +95,7 @@ std::optional<McapRecorder::Waiting> McapRecorder::next(const std::stop_token& s
   return waiting;
 }
 
-/// Of a frame whose result has left; those before it will not be asked for any more.
+/// Image of a frame whose result has left. Earlier frames will not be asked for any more.
 Image McapRecorder::imageOf(FrameId frame) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, kAnnouncement, [&] { return last_entered_ >= frame; });

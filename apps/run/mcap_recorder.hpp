@@ -17,8 +17,8 @@
 namespace motorcade {
 
 /// Writes a run as an MCAP file while it goes on (`run --mcap`). Encoding and writing are done on a thread of its own.
-/// Where that falls behind a live camera, first the images of frames are left out, then whole frames, and are counted;
-/// a replay waits for it instead.
+/// If that falls behind a live camera, first the images of frames are left out, then whole frames, and both are
+/// counted. A replay waits for it instead.
 class McapRecorder : public RunListener {
  public:
   enum class Behind { kWait, kLeaveOut };
@@ -31,12 +31,12 @@ class McapRecorder : public RunListener {
   ~McapRecorder() override;
 
   void frameEntered(const StereoFrame& frame) override;
-  /// Throws the OutputError that writing met.
+  /// Throws the OutputError of the writing thread.
   void frameLeft(const PipelineResult& result) override;
-  /// Writes what waits and ends the file. Throws OutputError.
+  /// Writes the waiting frames and ends the file. Throws OutputError.
   void close();
 
-  /// After `close`.
+  /// Counts of what was left out; valid after `close`.
   LeftOut leftOut() const { return left_out_; }
   std::uint64_t bytes() const { return out_.bytes(); }
 

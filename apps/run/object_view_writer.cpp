@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOutlinesFile = "outlines.jsonl";
 
-/// A mask, or one that a killed run left unfinished.
+/// True for a mask, also one that a killed run left unfinished.
 bool isOfMasks(const fs::path& file) {
   return isMaskFile(file.extension() == kUnfinishedSuffix ? file.parent_path() / file.stem() : file);
 }

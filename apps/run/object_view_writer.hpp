@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// Writes what the image shows of the objects (`run --masks`): a mask image per frame, for those who map what rests;
+/// Writes the image's view of the objects (`run --masks`): a mask image per frame, for users who map what rests;
 /// outlines as polygons; the followed points. Every failure is an OutputError naming the file.
 class ObjectViewWriter : public RunListener {
  public:
@@ -18,7 +18,7 @@ class ObjectViewWriter : public RunListener {
   void frameLeft(const PipelineResult& result) override;
   void close();
 
-  /// Removes such files of an earlier run, nothing else: they would be taken for this one's.
+  /// Removes such files of an earlier run, and no others: they would be taken for this run's.
   static void removeEarlier(const std::filesystem::path& run_folder);
 
  private:

@@ -13,12 +13,12 @@ struct PipelineConfig;
 struct RunOptions;
 
 /// The camera's path of `--camera-poses`, one pose for each frame of the sequence; empty without that option. Throws
-/// UsageError for the joint back-end, which makes its own odometry of the points at rest, and InputError for a file
-/// that does not fit the sequence.
+/// UsageError for the joint back-end, which estimates its own odometry from the points at rest. Throws InputError for a
+/// file that does not fit the sequence.
 std::optional<std::vector<SE3>> otherCamera(const RunOptions& options, const PipelineConfig& config,
                                             const Sequence& sequence);
 
-/// Makes the back-end see the motions of that path in place of the front-end's odometry, whose covariances stay.
+/// Makes the back-end use the motions of that path in place of the front-end's odometry, whose covariances stay.
 void replaceOdometry(Stages& stages, std::vector<SE3> T_world_cam);
 
 }  // namespace motorcade

@@ -7,16 +7,16 @@
 
 namespace motorcade {
 
-/// Watches for a drive that cannot be: times in another unit than seconds, or a wrong rate, make the camera faster than
+/// Watches for an impossible drive. Times in another unit than seconds, or a wrong rate, make the camera faster than
 /// any car, or its pairs too far apart to follow anything.
 class Plausibility {
  public:
-  /// Takes the online estimates in order. A sentence that says what is not plausible and how to mend it; only one of
-  /// its kind.
+  /// Takes the online estimates in order. Returns a sentence that says what is not plausible and how to mend it, one of
+  /// each kind.
   std::optional<std::string> observe(const FrameEstimate& online);
 
  private:
-  /// Frames in a row of which something holds; true when it has held long enough, once.
+  /// Frames in a row in which a condition holds; true when it has held long enough, once.
   class Persistent {
    public:
     bool observe(bool holds);

@@ -16,17 +16,16 @@
 
 namespace motorcade {
 
-/// Takes the pipeline's results, in order, into the run folder and to those who listen, and logs what is odd about
-/// them.
+/// Takes the pipeline's results, in order, into the run folder and to the listeners, and logs oddities.
 class Recorder {
  public:
   Recorder(RunFolderWriter& folder, RunListeners listeners, std::size_t frames);
 
   void record(const PipelineResult& result);
-  /// Frames that never entered; `due` stands for when they were due, which nobody knows.
+  /// Records frames that never entered. `due` replaces their due times, which are not known.
   void recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due);
   void recordFinals(const std::vector<FrameEstimate>& finals);
-  /// No further result comes; what was found of the own vehicle.
+  /// Ends the recording and returns the findings on the own vehicle.
   std::optional<OwnVehicleView> finish();
 
   const FollowedFrames& followed() const { return followed_; }

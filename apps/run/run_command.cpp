@@ -67,7 +67,7 @@ void requireWithin(const ImageLimits& limits, const Sequence& sequence) {
         fmt::format("{}: images of {} pixels, input.max_pixels is {}", sequence.name(), pixels, limits.max_pixels));
 }
 
-/// A calibration may tell how exact it is; what the user tells counts first.
+/// Considers the accuracy of the calibration. The user's values take precedence over the calibration's.
 void considerCalibration(const Sequence& sequence, PipelineConfig& config) {
   CalibrationSigmas& sigmas = config.backend.window.calibration;
   if (sequence.calibration.sigmas && sigmas == CalibrationSigmas{}) sigmas = *sequence.calibration.sigmas;
@@ -81,7 +81,7 @@ void requireBelievable(const Sequence& sequence, bool force) {
   }
 }
 
-/// Says what is odd about the images before the first of them is looked at. Throws InputError where results would be
+/// Reports oddities of the images before the first of them is looked at. Throws InputError where results would be
 /// worthless, unless the user insists.
 void tellNotes(const Sequence& sequence, bool force) {
   for (const InputNote& note : sequence.notes) {
@@ -125,7 +125,7 @@ void tellOutside(double share) {
         100 * share));
 }
 
-/// What is played into the pipeline.
+/// Input of the pipeline in a replay.
 struct Replay {
   RunInput& input;
   FrameInputs inputs;  // come with each pair
@@ -135,7 +135,7 @@ struct Replay {
   LiveView* view = nullptr;
 };
 
-/// While it lasts, the page may ask where the pipeline stands.
+/// Lets the page ask for the pipeline's state as long as it lives.
 class FollowedPipeline {
  public:
   FollowedPipeline(LiveView* view, const Pipeline& pipeline) : view_(view) {
@@ -181,7 +181,7 @@ RunSummary summaryBefore(const RunOptions& options, const PipelineConfig& config
   return summary;
 }
 
-/// Adds a sentence about the source to what was found, unless it is empty.
+/// Adds a sentence about the source to the findings, unless it is empty.
 void tellAtEnd(const char* name, const std::string& text, bool worthless, RunSummary& summary) {
   if (text.empty()) return;
   const FrameId after_last{summary.pipeline.received};
@@ -233,8 +233,8 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
                      static_cast<std::int64_t>(source->capacity())};
 }
 
-/// What the user asked for beside the run folder's own files. Made before the run, so that what cannot be written is
-/// known by then.
+/// Outputs that the user asked for beside the run folder's own files. They are opened before the run, so that errors
+/// are known by then.
 class ExtraOutputs {
  public:
   ExtraOutputs(const RunOptions& options, const StereoCamera& camera, InputPolicy policy) : mcap_file_(options.mcap) {
@@ -271,7 +271,7 @@ class ExtraOutputs {
   std::optional<McapRecorder> mcap_;
 };
 
-/// Exit code that tells the run's outcome to whoever started it.
+/// The exit code for the run's outcome.
 int exitCode(const RunSummary& summary, const FollowedFrames& followed, std::optional<double> required_tracking) {
   if (summary.refused) return kExitInput;
   if (summary.signal != 0) return kExitSignal + summary.signal;

@@ -33,7 +33,7 @@ StereoPacking packingOf(const RunOptions& options) {
   return options.side_by_side ? StereoPacking::kSideBySide : StereoPacking::kOverUnder;
 }
 
-/// Throws UsageError for what is not there where pairs come one by one. `input` is what the user named.
+/// Throws UsageError for options that need a whole drive where pairs come one by one. `input` is the user's.
 void refuseOneByOne(const RunOptions& options, const std::string& input) {
   if (!options.camera_poses.empty())
     throw UsageError("--camera-poses: needs a pose for each frame, and nobody knows how many " + input +
@@ -44,7 +44,7 @@ void refuseOneByOne(const RunOptions& options, const std::string& input) {
                        " has none");
 }
 
-/// Throws UsageError for what a stream has not.
+/// Throws UsageError for options that a stream cannot serve.
 void refuseForStream(const RunOptions& options, InputPolicy policy) {
   if (options.given.empty())
     throw UsageError(
@@ -59,7 +59,7 @@ void refuseForStream(const RunOptions& options, InputPolicy policy) {
     throw UsageError(std::string("-: the standard input is a terminal; pipe a stream into it, as by") + kY4mCommand);
 }
 
-/// The user's rate comes before the stream's.
+/// The user's rate takes precedence over the stream's.
 double streamRate_hz(const RunOptions& options, const Y4mHeader& header) {
   if (options.fps_hz) return *options.fps_hz;
   if (header.rate_hz) return *header.rate_hz;
@@ -122,7 +122,7 @@ RunInput openRecorded(const RunOptions& options, InputPolicy policy) {
   return input;
 }
 
-/// Pairs of a live camera that a later one has overtaken are left out where decoding is too slow.
+/// Leaves out pairs of a live camera that a later one has overtaken, where decoding is too slow.
 std::function<bool(Timestamp)> wantedPairs(const PipelineConfig& config, const std::optional<CameraClock>& clock) {
   if (!clock || config.pipeline.policy != InputPolicy::kLive) return {};
   return [&clock](Timestamp stamp) { return !clock->overtaken(stamp, std::chrono::steady_clock::now()); };

@@ -18,7 +18,7 @@
 
 namespace motorcade {
 
-/// The input of a run: what is known before its first pair, of a recorded drive, a stream or a bag.
+/// The input of a run as known before its first pair: a recorded drive, a stream or a bag.
 struct RunInput {
   Sequence sequence;
   FrameRange range{};                                  // of a stream or bag without --frames it has no end
@@ -31,17 +31,17 @@ struct RunInput {
   std::vector<VehicleMotionSample> vehicle_motion{};   // samples by time; none where it is not known
   std::filesystem::path instances{};                   // a folder of instance labels; empty without
 
-  /// The pairs come when the stream's writer sends them, whether or not they are taken.
+  /// True when the pairs come at their writer's pace, whether or not they are taken.
   bool writerPaced(InputPolicy policy) const { return sequence.piped() && policy == InputPolicy::kLive; }
-  /// Pairs that there are; 0 where nobody knows before the end.
+  /// Number of pairs; 0 where it is not known before the end.
   std::size_t count() const { return range.end == FrameRange{}.end ? 0 : range.size(); }
 };
 
-/// Opens what the user named. For a stream it waits for the header; what a stream cannot do is refused before. Throws
+/// Opens the user's input. For a stream it waits for the header, after it has refused what a stream cannot do. Throws
 /// InputError or UsageError.
 RunInput openRunInput(const RunOptions& options, InputPolicy policy);
 
-/// The clock that pairs are due by; empty where they come as fast as it goes, and where their writer has the clock.
+/// The clock by which pairs are due; empty where they come as fast as possible, and where their writer has the clock.
 std::optional<CameraClock> clockOf(const RunInput& input, InputPolicy policy);
 
 /// Begins to decode the input's pairs; `inputs` come with each. The source takes the stream; `clock` must outlive it.

@@ -12,7 +12,7 @@ namespace motorcade {
 
 struct PipelineConfig;
 
-/// The value of --vehicle-motion that leaves out what lies beside the drive.
+/// The value of --vehicle-motion that ignores a file beside the drive.
 inline constexpr const char* kNoVehicleMotion = "none";
 
 /// The command line of `motorcade run`, as the user typed it.
@@ -48,7 +48,7 @@ struct RunOptions {
 /// The configuration in force: defaults, then the file, then `--set`, then the options. Throws UsageError.
 PipelineConfig configurationOf(const RunOptions& options);
 
-/// Pairs per second at which the replay is to run; empty for as fast as it goes. Throws UsageError.
+/// Pairs per second of the replay; empty for as fast as possible. Throws UsageError.
 std::optional<double> replayRate_hz(const RunOptions& options, InputPolicy policy);
 
 /// The least share of tracked frames that the user accepts; empty when nothing is required. Throws UsageError.

@@ -27,7 +27,7 @@ Json toJson(const LatencyHistogram& histogram) {
           {"max", rounded(histogram.max_ms())}};
 }
 
-/// With its buckets: the upper bound of each, and how many are in it.
+/// Adds the buckets: the upper bound and the count of each.
 Json withBuckets(const LatencyHistogram& histogram) {
   Json json = toJson(histogram), buckets = Json::array();
   for (const auto& bucket : histogram.buckets()) buckets.push_back({rounded(bucket.upper_ms), bucket.count});
@@ -60,7 +60,7 @@ Json toJson(const QueueMark& queue) {
   return {{"name", queue.name}, {"high_water", queue.high_water}, {"bound", queue.bound}};
 }
 
-/// Of the causes that occurred.
+/// Counts of the causes that occurred.
 Json byCause(const PipelineSummary& pipeline) {
   Json counts = Json::object();
   for (std::size_t cause = 1; cause < kCauseCount; ++cause)
@@ -69,7 +69,7 @@ Json byCause(const PipelineSummary& pipeline) {
   return counts;
 }
 
-/// Frames are null of what is found in the first pairs.
+/// The frame numbers are null if the finding is from the first pairs.
 Json toJson(const RigFinding& found) {
   const auto frame = [&](FrameId id) { return found.last_good ? Json(id.value) : Json(nullptr); };
   return {{"name", found.finding.name},
@@ -122,7 +122,7 @@ std::string shakeLine(double shake_px) {
   return fmt::format("cameras     shake by {:.2f} px against each other, which the estimate allows for\n", shake_px);
 }
 
-/// What the program is made of.
+/// Versions of the program and its libraries.
 Json programVersions() {
   Json json = Json::object();
   for (const auto& [name, version] : versions()) json[name] = version;

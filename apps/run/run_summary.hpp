@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// What became of `run --mcap`.
+/// Outcome of `run --mcap`.
 struct McapSummary {
   std::string file;
   std::uint64_t bytes = 0;
@@ -26,7 +26,7 @@ struct ImageCounts {
   std::int64_t left_out = 0;  // that belong to no frame
 };
 
-/// All that `summary.json` tells about a run.
+/// The content of `summary.json`.
 struct RunSummary {
   PipelineSummary pipeline;
   PipelineParams params;

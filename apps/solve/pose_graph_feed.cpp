@@ -91,7 +91,7 @@ void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
   }
 }
 
-/// Its edges to variables came with those, or come with them; the ones between constants count in chi2 alone.
+/// Feeds a constant. Its edges to variables enter with those; edges between constants count in chi2 alone.
 void PoseGraphFeed::feedConstant(std::size_t pose, Update& update) {
   ++constants_, ++update.poses;
   for (const Neighbor& neighbor : index_.neighbors(pose))
@@ -113,7 +113,7 @@ std::optional<PoseGraphFeed::Neighbor> PoseGraphFeed::joinedTo(std::size_t pose)
   return best;
 }
 
-/// Breadth first: the initial value of a pose that waited comes over as few edges as possible.
+/// Goes breadth first, so that the initial value of a waiting pose comes over as few edges as possible.
 void PoseGraphFeed::addWithWaiting(std::size_t pose, const Neighbor& joint, Update& update) {
   struct Joining {
     std::size_t pose;
@@ -151,7 +151,7 @@ void PoseGraphFeed::add(std::size_t pose, const Value& initial, Update& update) 
   }
 }
 
-/// In the solver's frame of its part.
+/// Value of a pose in the frame that the solver uses for its part.
 Value PoseGraphFeed::valueOf(std::size_t pose) const {
   if (!gauge_.isConstant(pose)) return solver_.estimate(variable_[pose]);
   return std::visit([](const auto& value) { return Value(value); }, gauge_.valueOf(pose));
@@ -169,7 +169,7 @@ std::unique_ptr<JacobianFactor> PoseGraphFeed::factorTo(std::size_t pose, const 
                                          valueOf(neighbor.pose), variable);
 }
 
-/// From a pose at `start` over an edge to its neighbor.
+/// Moves a pose at `start` over an edge to its neighbor.
 Value PoseGraphFeed::moved(const Value& start, const Neighbor& from, std::size_t to) const {
   const auto& edge = graph_.edges[from.edge];
   const bool forward = edge.to == index_.id(to);

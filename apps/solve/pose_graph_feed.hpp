@@ -11,12 +11,12 @@
 
 namespace motorcade {
 
-/// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven: a pose
-/// comes with all edges to poses that are there already and starts where odometry puts it, whatever vertices the file
-/// lists. A pose that no edge joins yet waits; it enters with all that waited for it once an edge does.
+/// Feeds a pose graph to the incremental solver in the order of the poses' ids, as if it were being driven. A pose
+/// comes with all edges to present poses and starts at its odometry, whatever vertices the file lists. A pose that no
+/// edge joins yet waits. Once an edge joins it, it enters with all that waited for it.
 ///
-/// The first pose of each connected part is held at the origin by a tight prior, and the solution is moved to where the
-/// part's gauge wants it: chi2 does not depend on that. Where several poses are held, they are constants of the solver.
+/// A tight prior holds the first pose of each connected part at the origin, and the solution is moved to the part's
+/// gauge: chi2 does not depend on that. Where several poses are held, they are constants of the solver.
 class PoseGraphFeed {
  public:
   enum class Pace {
@@ -40,7 +40,7 @@ class PoseGraphFeed {
 
   std::size_t updateCount() const { return update_ends_.size(); }
   bool atEnd() const { return updates_done_ == update_ends_.size(); }
-  /// Feeds the next update, while not at the end.
+  /// Feeds the next update; there must be one.
   Update next();
 
   IncrementalSolver& solver() { return solver_; }
@@ -54,16 +54,17 @@ class PoseGraphFeed {
   std::size_t edgeCount() const { return edge_count_; }                            // in the solution
   const PoseGraphIndex& index() const { return index_; }
   const PoseGraphGauge& gauge() const { return gauge_; }
-  /// Of the edges in the solver, at its estimate; without the prior.
+  /// Chi-square of the edges in the solver, at its estimate; without the prior.
   double chi2() const;
-  /// Edges that the solver refused because they are not finite where they entered: indices into the graph's.
+  /// Edges that the solver refused, as they are not finite at the values with which they entered: indices into the
+  /// graph's.
   const std::vector<std::size_t>& refusedEdges() const { return refused_edges_; }
   const std::vector<LateJoin>& lateJoins() const { return late_joins_; }
   /// Problems of the solver's system in its current state.
   std::vector<SolverProblem> problemsNow() const;
   /// The ids of the poses fed so far, of each part but the main one.
   std::vector<std::vector<std::int64_t>> disconnectedParts() const;
-  /// Every pose fed so far: the estimate; one that no edge touches stays where its vertex is.
+  /// The estimates of all poses fed so far. A pose that no edge touches keeps its vertex.
   std::vector<PoseGraph::Vertex> vertices() const;
 
  private:

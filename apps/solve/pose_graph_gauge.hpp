@@ -8,9 +8,9 @@
 
 namespace motorcade {
 
-/// Finds what holds a pose graph where it is. Measured motions leave each connected part free to move as a whole: its
-/// poses with a FIX line keep the values of their vertices, or its first pose does. A pose without a vertex that must
-/// be held is held at the origin.
+/// Determines the gauge of a pose graph. Measured motions leave each connected part free to move as a whole: its poses
+/// with a FIX line keep the values of their vertices, or its first pose does. A pose without a vertex that must be held
+/// is held at the origin.
 class PoseGraphGauge {
  public:
   struct Part {
@@ -18,7 +18,7 @@ class PoseGraphGauge {
     std::size_t size = 0;             // poses
     std::vector<std::size_t> held{};  // one or more, ascending
   };
-  /// A FIX line that holds nothing.
+  /// A FIX line without effect.
   struct Unapplied {
     std::int64_t id = 0;
     enum class Why { kNoSuchPose, kNoVertex } why = Why::kNoSuchPose;
@@ -28,11 +28,11 @@ class PoseGraphGauge {
 
   const std::vector<Part>& parts() const { return parts_; }  // by their first poses
   std::size_t partOf(std::size_t pose) const { return part_of_[pose]; }
-  /// The part that the graph is about: the first one with an edge, or else the first one.
+  /// The main part of the graph: the first one with an edge, or else the first one.
   std::size_t mainPart() const { return main_part_; }
   /// Value of the pose's vertex, or the origin if it has none.
   PoseGraph::Pose valueOf(std::size_t pose) const;
-  /// Several poses of its part are held and this is one of them: a constant.
+  /// True for a constant: several poses of its part are held, and this is one of them.
   bool isConstant(std::size_t pose) const { return constant_[pose] != 0; }
   const std::vector<Unapplied>& unapplied() const { return unapplied_; }
 

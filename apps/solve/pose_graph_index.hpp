@@ -18,7 +18,7 @@ class PoseGraphIndex {
   struct Neighbor {
     std::size_t pose, edge;
   };
-  /// In the order of the file.
+  /// Neighbors in the order of the file.
   std::span<const Neighbor> neighbors(std::size_t pose) const {
     return std::span(neighbors_).subspan(first_[pose], first_[pose + 1] - first_[pose]);
   }

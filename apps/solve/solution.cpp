@@ -24,7 +24,7 @@ std::string namesOf(const std::vector<std::int64_t>& ids) {
   return text;
 }
 
-/// Factors that the solver had to leave out, each once. What is wrong with the system may be mended by a later edge.
+/// Adds the factors that the solver had to leave out, each once. A later edge may mend a fault of the system.
 void addRefusals(const IncrementalSolver::Report& report, const PoseGraphFeed& feed,
                  std::vector<SolveProblem>& problems) {
   using Kind = SolverProblem::Kind;
@@ -38,7 +38,7 @@ void addRefusals(const IncrementalSolver::Report& report, const PoseGraphFeed& f
   }
 }
 
-/// Directions along which the edges do not say where poses are. Badly conditioned ones are solved, if badly.
+/// Adds the directions along which the edges do not determine the poses. Badly conditioned ones are solved, if badly.
 void addUndetermined(const PoseGraphFeed& feed, Solution& solution) {
   const auto nameOf = [&](VariableId v) { return namesOf({feed.poseOf(v)}); };
   for (const SolverProblem& found : feed.problemsNow()) {

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a user should know of a graph and its solution.
+/// A problem of a graph or its solution that the user should know.
 struct SolveProblem {
   std::string kind;    // one word
   std::string name;    // its subject: "pose 17"
@@ -16,14 +16,14 @@ struct SolveProblem {
   std::vector<std::int64_t> poses;
 };
 
-/// A solved graph, and what it took.
+/// A solved graph, with the cost of solving it.
 struct Solution {
   std::size_t poses = 0, edges = 0;  // in the solution
   bool complete = true;              // not stopped before its end
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
-  /// After the last update: edges that the budget put off, their chi2, and scalars to substitute.
+  /// State after the last update: edges that the budget put off, their chi2, and scalars to substitute.
   int waiting_edges = 0;
   double waiting_chi2 = 0;
   std::int64_t waiting_scalars = 0;
@@ -32,15 +32,15 @@ struct Solution {
   std::vector<PoseGraph::Vertex> vertices;
 };
 
-/// Told after each step how many are done and how many there may be; false stops the work there, with what is solved.
+/// Called after each step with the numbers of steps done and of possible ones. Returns false to stop the work there.
 using SolveProgress = std::function<bool(std::size_t done, std::size_t count)>;
 
 /// Smooths the graph as it comes, an update per pose or frame.
 Solution solveIncrementally(const PoseGraph& graph, const IncrementalSolver::Params& params,
                             const SolveProgress& progress);
 
-/// Gauss-Newton on the whole graph until nothing moves, from odometry; where that does not get there, from the
-/// incremental solution.
+/// Gauss-Newton on the whole graph until nothing moves, starting from odometry. If that does not converge, it starts
+/// from the incremental solution.
 Solution solveAtOnce(const PoseGraph& graph, const IncrementalSolver::Params& params, const SolveProgress& progress);
 
 }  // namespace motorcade

@@ -14,7 +14,8 @@ struct SolveOptions {
   bool at_once = false, every_update = false;
 };
 
-/// Solves a pose graph, prints the result and writes the files asked for; gives the exit code. Failures are UserErrors.
+/// Solves a pose graph, prints the result and writes the requested files; returns the exit code. Failures are
+/// UserErrors.
 int runSolve(const SolveOptions& options);
 
 }  // namespace motorcade

@@ -16,7 +16,7 @@ struct Times {
   double median_ms = 0, p99_ms = 0, max_ms = 0;
 };
 
-/// By nearest rank: each is the time of an update.
+/// Percentiles by nearest rank: each is the time of an update.
 Times timesOf(std::vector<double> update_ms) {
   if (update_ms.empty()) return {};
   std::ranges::sort(update_ms);

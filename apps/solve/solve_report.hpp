@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// For people: times, chi2, counts, and a line for each problem.
+/// Report for people: times, chi2, counts, and a line for each problem.
 std::string textOf(const Solution& solution);
 
 /// The same for programs.

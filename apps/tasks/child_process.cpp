@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kCannotExecute = 127;  // as shells have it
 
-/// All that the child needs between fork and exec, where it may not ask for memory.
+/// All data that the child needs between fork and exec, where it may not allocate memory.
 struct Prepared {
   std::vector<char*> words;
   const char* folder;

@@ -19,7 +19,7 @@ struct ChildCommand {
   std::vector<int> processors{};   // that it is kept to; empty for those of this thread
 };
 
-/// How a program ended, and what it used.
+/// Exit and resource usage of a program.
 struct ChildEnd {
   int exit_code = 0;
   int signal = 0;  // that killed it; 0 for none
@@ -29,8 +29,8 @@ struct ChildEnd {
   bool good() const { return exit_code == 0 && signal == 0; }
 };
 
-/// A program that runs as a child of this process, in a process group of its own: what a terminal sends to the group of
-/// this one does not reach it. It is told to end (SIGTERM) when the thread that started it ends.
+/// A program that runs as a child of this process, in a process group of its own. Signals that a terminal sends to this
+/// process' group do not reach it. It is told to end (SIGTERM) when the thread that started it ends.
 class ChildProcess {
  public:
   /// Throws OutputError where the log cannot be written or no process can be started. A program that cannot be executed
@@ -41,9 +41,9 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Sends a signal to the program and what it started.
+  /// Sends a signal to the program and its children.
   void signal(int number);
-  /// Waits so long at most; empty while the program runs.
+  /// Waits for at most `patience`; empty while the program runs.
   std::optional<ChildEnd> wait(std::chrono::milliseconds patience);
 
  private:

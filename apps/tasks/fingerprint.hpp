@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// Tells whether what a result depends on is still the same. The same values in the same order give the same text; not
-/// meant to withstand somebody who looks for a collision.
+/// Tells whether all inputs of a result are still the same. The same values in the same order give the same text. It
+/// does not withstand a deliberate search for a collision.
 class Fingerprint {
  public:
   Fingerprint();
@@ -18,10 +18,10 @@ class Fingerprint {
   Fingerprint(const Fingerprint&) = delete;
   Fingerprint& operator=(const Fingerprint&) = delete;
 
-  /// Two texts in a row are not the same as one that joins them.
+  /// Adds a text. Two texts in a row differ from their concatenation.
   void add(std::string_view text);
   void add(double number);
-  /// Name, size and time of change; a file that is not there counts as such.
+  /// Adds a file's name, size and time of change, or that it is missing.
   void addFile(const std::filesystem::path& file);
   /// 32 hexadecimal digits.
   std::string text() const;
@@ -31,13 +31,14 @@ class Fingerprint {
   std::unique_ptr<State> state_;
 };
 
-/// Of one file's name, size and time of change.
+/// Stamp of a file's name, size and time of change.
 std::string fileStamp(const std::filesystem::path& file);
 
-/// Of a program's bytes and those of its modules. Throws UsageError where it cannot be read.
+/// Fingerprint of the bytes of a program and its modules. Throws UsageError where it cannot be read.
 std::string programFingerprint(const std::filesystem::path& program);
 
-/// Of a recorded drive: its images and files of truth by name, size and time of change, its cameras by their numbers.
+/// Fingerprint of a recorded drive: its images and files of truth by name, size and time of change, its cameras by
+/// their numbers.
 std::string sequenceFingerprint(const Sequence& sequence);
 
 }  // namespace motorcade

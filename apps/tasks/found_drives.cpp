@@ -23,14 +23,14 @@ std::string nameOf(std::string text) {
   return text;
 }
 
-/// How many parts of a pattern stand before the first one with a wildcard.
+/// Number of parts of a pattern before the first one with a wildcard.
 std::ptrdiff_t partsBeforeWildcard(const fs::path& pattern) {
   return std::distance(pattern.begin(), std::ranges::find_if(pattern.begin(), pattern.end(), [](const fs::path& part) {
                          return hasWildcard(part.string());
                        }));
 }
 
-/// The parts of a path from one on; a list of images is a file, whose name goes without its end.
+/// The parts of a path from `first_part` on. A list of images is a file, whose name loses its extension.
 std::string nameFrom(const fs::path& path, std::ptrdiff_t first_part) {
   fs::path name;
   for (auto part = std::next(path.begin(), first_part); part != path.end(); ++part) name /= *part;
@@ -44,7 +44,7 @@ std::vector<fs::path> matchesOf(const fs::path& pattern) {
   if (::glob(pattern.c_str(), GLOB_BRACE, nullptr, &found) == 0)
     for (std::size_t i = 0; i < found.gl_pathc; ++i) matches.emplace_back(found.gl_pathv[i]);
   ::globfree(&found);
-  // A pattern asks for lists of images by the end of their names; else drives are folders.
+  // A pattern with an extension finds lists of images; without one, drives are folders.
   if (!pattern.has_extension()) std::erase_if(matches, [](const fs::path& match) { return !fs::is_directory(match); });
   std::ranges::sort(matches, NaturalOrder{});
   return matches;

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// A drive that an entry of a manifest means.
+/// A drive that an entry of a manifest stands for.
 struct FoundDrive {
   std::string name{};
   std::filesystem::path path{};  // absolute; empty for a scene
@@ -16,8 +16,8 @@ struct FoundDrive {
   bool missing = false;          // nothing is there
 };
 
-/// Those of an entry, in the order of their paths. A drive's name is the entry's, else the last part of its path, or,
-/// of a glob, its path from the first part with a wildcard on; and that of a scene.
+/// The drives of an entry, in the order of their paths. A drive's name is the entry's, else the last part of its path.
+/// Of a glob it is the path from the first part with a wildcard on, of a scene the scene's.
 std::vector<FoundDrive> findDrives(const ManifestEntry& entry, const std::filesystem::path& root);
 
 }  // namespace motorcade

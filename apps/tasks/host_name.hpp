@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Of this machine, as others know it.
+/// Name of this machine, as others know it.
 std::string hostName();
 
 }  // namespace motorcade

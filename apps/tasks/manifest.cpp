@@ -38,7 +38,7 @@ bool isTable(const std::filesystem::path& file) {
   return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".lst" || end == ".list";
 }
 
-/// The root that the manifest tells, from its own folder. It may name a variable of the environment.
+/// The manifest's own root, relative to the manifest's folder. It may name a variable of the environment.
 std::filesystem::path ownRoot(const Manifest& manifest) {
   const std::string root = expandedPath(manifest.root.string());
   if (const std::string missing = unsetVariable(root); !missing.empty())

@@ -14,7 +14,7 @@ struct ParameterSet {
   std::vector<std::string> assignments{};  // key=value, as `run --set` takes them
 };
 
-/// A line of a manifest: a drive, a glob of several, or a scene to render, with how to run it.
+/// A line of a manifest: a drive, a glob of several, or a scene to render, with the options for its runs.
 struct ManifestEntry {
   std::string path{};                         // of a recorded drive, or a glob of several
   std::vector<std::string> other_paths{};     // where to look, in this order, when nothing is there
@@ -31,7 +31,8 @@ struct ManifestEntry {
   std::string where{};                           // file and line, for messages
 };
 
-/// Many drives and how to run them, as its file says; nothing is looked for yet. Formats: docs/formats.md.
+/// Many drives and the options for their runs, as in the manifest's file. The drives are not looked for yet. Formats:
+/// docs/formats.md.
 struct Manifest {
   std::filesystem::path file{};  // absolute
   std::filesystem::path root{};  // absolute: what paths of drives and baselines are relative to
@@ -42,8 +43,8 @@ struct Manifest {
   std::vector<ManifestEntry> entries{};
 };
 
-/// Reads TOML or, where the name ends with .csv, .tsv or .txt, a table or a list of paths. `root` comes before the
-/// manifest's own where it is not empty. Throws UsageError naming file, line, key and how to fix it.
+/// Reads TOML or, if the name ends with .csv, .tsv or .txt, a table or a list of paths. A given `root` takes precedence
+/// over the manifest's own. Throws UsageError naming file, line, key and how to fix it.
 Manifest readManifest(const std::filesystem::path& file, const std::filesystem::path& root = {});
 
 }  // namespace motorcade

@@ -15,14 +15,14 @@ namespace {
 /// Characters that separate fields, as programs for tables in many countries write them.
 constexpr std::string_view kSeparators = ",;\t";
 
-/// A line of a table, and where it stands, for messages.
+/// A line of a table, and its position for messages.
 struct TableLine {
   std::string text{};
   std::string where{};
 };
 
-/// Field by field; one with a separator stands between quotes, in which two quotes are one (RFC 4180). Single quotes
-/// around a field go, too.
+/// Splits a line into fields. A field with a separator stands between quotes, in which two quotes are one (RFC 4180).
+/// Single quotes around a field are removed, too.
 std::vector<std::string> fieldsOf(const TableLine& line, char separator) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -56,7 +56,7 @@ std::string withoutComment(const std::string& line) {
   return line;
 }
 
-/// The lines that say something. Accepts all line ends and a byte order mark.
+/// The lines that are neither blank nor comments. Accepts all line ends and a byte order mark.
 std::vector<TableLine> linesOf(const std::filesystem::path& file, std::string text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || text.find('\0') != std::string::npos)
     throw UsageError(file.string() +
@@ -97,7 +97,7 @@ TableForm formOf(const TableLine& first) {
   return form;
 }
 
-/// The path that is all of a line, where a list has no columns.
+/// The path of a line in a list without columns.
 std::string barePath(TableLine line) {
   line.text.erase(line.text.find_last_not_of(",; \t") + 1);
   for (const char separator : kSeparators)
@@ -115,7 +115,7 @@ std::vector<std::string> wordsOf(const std::string& field) {
   return words;
 }
 
-/// A row of the table by its columns: those whose names have a dot are parameters of the row's own set.
+/// A row of the table by its columns. Columns whose names have a dot are parameters of the row's own set.
 struct Row {
   ManifestFields fields;
   ParameterSet set;
@@ -143,7 +143,7 @@ Row rowOf(const std::vector<std::string>& columns, std::vector<std::string> valu
   return row;
 }
 
-/// A set of one name has the same parameters in all rows.
+/// Adds a set. Sets of the same name must have the same parameters in all rows.
 void addSet(Manifest& manifest, const ParameterSet& set, const std::string& where) {
   const auto known = std::ranges::find(manifest.sets, set.name, &ParameterSet::name);
   if (known == manifest.sets.end())

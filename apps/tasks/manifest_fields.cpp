@@ -24,7 +24,7 @@ constexpr std::array<const char*, 12> kEntryKeys{"path",  "scene", "name",  "len
 constexpr std::array<const char*, 13> kPathColumns{"path",      "paths",    "drive",   "drives", "sequence",
                                                    "sequences", "folder",   "folders", "dir",    "directory",
                                                    "file",      "filename", "location"};
-/// Of `run`; the last one of `evaluate`.
+/// Options of `run`; the last one is one of `evaluate`.
 constexpr std::array<const char*, 12> kOptionKeys{"frames",      "fps",   "rate",   "live",   "masks",   "camera",
                                                   "calibration", "bayer", "config", "inject", "require", "baseline"};
 

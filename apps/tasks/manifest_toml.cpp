@@ -19,7 +19,7 @@ std::string wordOf(const toml::node& node) {
   return text.str();
 }
 
-/// The place of a key, or of an element of a list. A table that dotted keys make has no place of its own.
+/// The position of a key, or of an element of a list. A table that dotted keys make has none of its own.
 TomlPosition positionOf(const auto& key_or_element, const std::filesystem::path& file) {
   return {file.string(), key_or_element.source().begin.line};
 }
@@ -61,7 +61,7 @@ void addAssignments(ParameterSet& set, const toml::table& table, const std::stri
   }
 }
 
-/// In the order of the file: a TOML table forgets it.
+/// Sets in the order of the file, which a TOML table does not keep.
 std::vector<ParameterSet> setsOf(const toml::table& table, const std::filesystem::path& file) {
   std::map<std::pair<toml::source_index, toml::source_index>, ParameterSet> by_place;
   for (const auto& [key, node] : table) {

@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// A variable's place in a text, with the dollar and the braces.
+/// A variable's position in a text, with the dollar and the braces.
 struct NamedVariable {
   std::size_t begin = 0, length = 0;
   std::string name{};

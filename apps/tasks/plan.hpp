@@ -27,7 +27,7 @@ struct Task {
   std::string problem{};      // why it cannot be performed; empty where it can
 };
 
-/// A drive of the manifest that may be missing, and is.
+/// A drive of the manifest that is missing, and may be.
 struct LeftOutDrive {
   std::string name{};
   std::string looked_for{};  // path, or several

@@ -56,7 +56,7 @@ double fpsOf(const ManifestEntry& entry) {
   return fps_hz;
 }
 
-/// The frames that the entry selects: `truth` are those of which the truth tells.
+/// The frames that the entry selects; `truth` are those with ground truth.
 std::string frameRangeOf(const std::string& option, const Sequence& sequence, const std::optional<CameraTruth>& truth) {
   if (option != kFramesOfTruth) return option;
   if (!truth || truth->T_world_cam.empty()) return "";
@@ -65,7 +65,7 @@ std::string frameRangeOf(const std::string& option, const Sequence& sequence, co
   return std::to_string(truth->first_frame) + ":" + std::to_string(end);
 }
 
-/// Opens a recorded drive; what is wrong with it becomes its problem.
+/// Opens a recorded drive; an error becomes its problem.
 void open(const Manifest& manifest, PlannedDrive& drive) {
   const ManifestEntry& entry = *drive.entry;
   if (!drive.found.problem.empty()) return;

@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// A drive of a manifest, and what is known of it before it is run.
+/// A drive of a manifest, with the facts that are known before it is run.
 struct PlannedDrive {
   const ManifestEntry* entry = nullptr;
   FoundDrive found{};
@@ -20,16 +20,16 @@ struct PlannedDrive {
   std::string fingerprint{};
 };
 
-/// Opens all recorded drives; what is wrong with one becomes its problem. Each of their files is looked at, which takes
-/// long on a network: several drives at a time.
+/// Opens all recorded drives; an error becomes the drive's problem. Several drives are opened at a time, as looking at
+/// each of their files takes long on a network.
 void openDrives(const Manifest& manifest, std::vector<PlannedDrive>& drives);
 
-/// Of a scene that is rendered with a seed; its fingerprint is that of its task, as it depends on nothing else.
+/// Describes a scene that is rendered with a seed. Its fingerprint is that of its task, as it depends on nothing else.
 void describeScene(PlannedDrive& drive, std::uint32_t seed);
 
 /// An option of `run` or `evaluate` by its name; empty where the entry has none.
 std::string optionOf(const ManifestEntry& entry, const std::string& name);
-/// One that is the name of a file, which is relative to `root`.
+/// An option with the name of a file, which is relative to `root`.
 std::filesystem::path fileOption(const ManifestEntry& entry, const std::string& name,
                                  const std::filesystem::path& root);
 /// `--calibration` of `run`: one file, or two with a comma between them.

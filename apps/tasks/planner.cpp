@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a run of the entry's drives is asked for with a set of parameters.
+/// Options of a run of the entry's drive with a set of parameters.
 RunOptions runOptionsOf(const Manifest& manifest, const PlannedDrive& drive, const ParameterSet& set, int threads) {
   const ManifestEntry& entry = *drive.entry;
   RunOptions run;
@@ -80,7 +80,7 @@ std::string otherPlaces(const ManifestEntry& entry) {
   return text;
 }
 
-/// What the entries of one manifest become, one after the other.
+/// Builds a plan from the entries of one manifest, one after the other.
 class Planner {
  public:
   Planner(const Manifest& manifest, const PlanOptions& options)
@@ -184,7 +184,7 @@ class Planner {
     }
   }
 
-  /// The command lines of the task, after a look at whether they can be right.
+  /// Sets the command lines of the task, after a check of their options.
   void describeRun(Task& task, const PlannedDrive& drive, const ParameterSet& set) const {
     const ManifestEntry& entry = *drive.entry;
     const RunOptions run = runOptionsOf(manifest_, drive, set, options_.threads);
@@ -215,7 +215,7 @@ class Planner {
     }
   }
 
-  /// A batch whose drives may be missing needs one all the same.
+  /// Throws unless there is a drive: a batch whose drives may be missing needs at least one.
   void requireSomething() const {
     constexpr std::size_t kMostNamed = 5;
     if (!found_.empty() || plan_.left_out.empty()) return;

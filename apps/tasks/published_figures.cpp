@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostFigures_bytes = std::size_t{1} << 24;
 constexpr std::array<std::string_view, 9> kKeys{"dataset", "method", "measure", "unit", "source",
                                                 "note",    "values", "mean_of", "value"};
-/// Units, and how the name of a measure in each ends.
+/// Units, and the endings of measures' names in each.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kUnits{
     {{"m", "_m"}, {"deg", "_deg"}, {"percent", "_percent"}, {"deg/m", "_deg_per_m"}}};
 

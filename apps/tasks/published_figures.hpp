@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// A figure that somebody published, to stand beside a measure of the same definition.
+/// A published figure, to stand beside a measure of the same definition.
 struct PublishedFigure {
   std::string method{}, measure{};    // the measure as a column of results.csv
   std::vector<std::string> drives{};  // by their names; of several, the figure is the mean
@@ -16,8 +16,8 @@ struct PublishedFigure {
   std::string note{};    // what differs in how it was measured; may be empty
 };
 
-/// Those of one data set in a file of them (docs/formats.md). Throws UsageError naming file, line, key and how to fix
-/// it; a figure without a source is refused.
+/// Reads the figures of one data set from a file (docs/formats.md). Throws UsageError naming file, line, key and how to
+/// fix it; a figure without a source is refused.
 std::vector<PublishedFigure> readPublishedFigures(const std::filesystem::path& file, const std::string& dataset);
 
 }  // namespace motorcade

@@ -10,7 +10,7 @@
 #include "io/files/json_text.hpp"
 #include "io/files/text_file.hpp"
 
-/// What plans and records have in common as JSON.
+/// JSON helpers that plans and records share.
 namespace motorcade {
 
 using Json = nlohmann::ordered_json;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Does something to folders. Throws OutputError with both names.
+/// Makes a folder. Throws OutputError naming it.
 void makeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -27,8 +27,8 @@ void makeFolder(const fs::path& folder) {
 
 std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
-/// Gives a folder its place; what lies there is replaced, unless somebody else puts his own there meanwhile: then his
-/// one stays. True where ours is there.
+/// Renames a folder to its final name and replaces an existing one. If another process puts its own there meanwhile,
+/// that one stays. True if ours is there.
 bool putInPlace(const fs::path& from, const fs::path& to) {
   makeFolder(to.parent_path());
   fs::path before = from;
@@ -45,7 +45,7 @@ bool putInPlace(const fs::path& from, const fs::path& to) {
   return ours;
 }
 
-/// Which rendering of a scene lies in a folder; empty for a recorded drive, or where there is none.
+/// Stamp of the rendering of a scene in a folder; empty for a recorded drive, or where there is none.
 std::string renderingOf(const Task& task) {
   return task.render_arguments.empty() || !fs::exists(task.sequence) ? "" : fileStamp(task.sequence / "poses.txt");
 }
@@ -54,7 +54,7 @@ fs::path attemptFolder(const Task& task, const Workplace& workplace) {
   return workplace.folder.attempts() / (task.name + "~" + workplace.attempt);
 }
 
-/// Those parts of a record that are known before the work.
+/// The parts of a record that are known before the work.
 TaskRecord recordOf(const Task& task, const Workplace& workplace) {
   TaskRecord record{.task = task.name,
                     .drive = task.drive,
@@ -80,7 +80,7 @@ bool runSteps(const Task& task, TaskSteps& steps) {
   return steps.run("evaluate", evaluate);
 }
 
-/// Does all the work; the record tells what became of it. Empty when it was stopped.
+/// Does all the work and returns its record. Empty when it was stopped.
 std::optional<TaskRecord> work(const Task& task, const Workplace& workplace, const fs::path& attempt) {
   const auto start = std::chrono::steady_clock::now();
   TaskRecord record = recordOf(task, workplace);

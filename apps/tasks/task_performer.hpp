@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// Where and how a task is performed.
+/// Place and limits of the work on a task.
 struct Workplace {
   BatchFolder folder;
   std::filesystem::path program{};          // the motorcade that does the work
@@ -25,20 +25,19 @@ struct Workplace {
 };
 
 /// Does the work of a task in a folder of its own, `attempts/TASK~ATTEMPT`: renders the sequence if need be, runs it
-/// and, where there is truth, evaluates the run. When all is done, the folder gets its place among the results; a
-/// second attempt at the same task, at the same time or later, does no harm. What fails is kept among the failures,
-/// with a record that says why. Empty when it was stopped: then nothing is left. Throws OutputError where not even that
-/// can be written.
+/// and, where there is truth, evaluates the run. When all is done, the folder moves to the results; a second attempt at
+/// the same task, at the same time or later, does no harm. A failure is kept among the failures, with a record of the
+/// reason. Empty when it was stopped: then nothing is left. Throws OutputError where not even that can be written.
 std::optional<TaskRecord> performTask(const Task& task, const Workplace& workplace);
 
-/// Makes sure that the task's sequence has been rendered; in the folder of the sequence nothing is seen before all of
-/// it is there. Gives what went wrong. Of a recorded drive there is nothing to do.
+/// Makes sure that the task's sequence has been rendered. Its folder appears only when it is complete. Returns the
+/// failure. A recorded drive needs nothing.
 std::optional<TaskFailure> renderSequence(const Task& task, const Workplace& workplace);
 
-/// The record of a finished task that need not be performed again: the same entry of the manifest, configuration,
-/// program and input. Empty where there is none.
+/// The record of a finished task that need not be performed again, as the manifest's entry, configuration, program and
+/// input are the same. Empty where there is none.
 std::optional<TaskRecord> finishedRecord(const Task& task, const BatchFolder& folder);
-/// The same of a task that failed.
+/// The record of a failed task that need not be performed again.
 std::optional<TaskRecord> failedRecord(const Task& task, const BatchFolder& folder);
 
 /// The last lines of a text file, without what would disturb a terminal.

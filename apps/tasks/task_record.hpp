@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Why an attempt at a task came to nothing.
+/// Reason why an attempt at a task failed.
 struct TaskFailure {
   std::string step{};     // render, run, evaluate, or the preparation of them
   std::string message{};  // a sentence
@@ -17,7 +17,7 @@ struct TaskFailure {
   std::vector<std::string> last_lines{};
 };
 
-/// What became of an attempt at a task (task.json).
+/// Record of an attempt at a task (task.json).
 struct TaskRecord {
   std::string task{}, drive{}, set{};
   std::optional<std::uint32_t> seed{};

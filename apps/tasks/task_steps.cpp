@@ -23,7 +23,7 @@ std::string sentenceOn(const std::string& step, const ChildEnd& end) {
   return fmt::format("{} ended with exit code {}", step, end.exit_code);
 }
 
-/// Tells a step to end, and waits for it; kills it where it does not.
+/// Tells a step to end, and waits for it. Kills it if it does not end.
 ChildEnd endOf(ChildProcess& child) {
   child.signal(SIGTERM);
   if (const auto end = child.wait(kPatience)) return *end;

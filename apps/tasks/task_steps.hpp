@@ -12,14 +12,14 @@ namespace motorcade {
 /// Runs the steps of one task as child processes, within its time, until it is stopped.
 class TaskSteps {
  public:
-  /// Works in `folder`, which is there; the log lies in it.
+  /// Works in `folder`, which exists and gets the log.
   TaskSteps(const Workplace& workplace, std::filesystem::path folder);
 
   /// Runs the program with these words; false when it failed or was stopped.
   bool run(const std::string& step, const std::vector<std::string>& words);
 
   bool stopped() const { return workplace_.stop != nullptr && *workplace_.stop; }
-  /// Of the step that failed; empty where none did or the task was stopped.
+  /// Failure of a step; empty where none failed or the task was stopped.
   const std::optional<TaskFailure>& failure() const { return failure_; }
   double cpu_s() const { return cpu_s_; }
   std::int64_t peakMemory_bytes() const { return peak_memory_bytes_; }

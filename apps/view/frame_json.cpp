@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Without digits that nobody sees; what is not finite becomes null.
+/// Rounds away digits that nobody sees. JSON turns a value that is not finite into null.
 double rounded(double value, double digits = 1e3) { return std::round(value * digits) / digits; }
 
 Json toJson(const Eigen::Vector3d& vector) { return {rounded(vector.x()), rounded(vector.y()), rounded(vector.z())}; }
@@ -32,7 +32,7 @@ Json toJson(const SE3& T) {
   return json;
 }
 
-/// How far the object's middle is from the camera, and how sure that is.
+/// Adds the distance of the object's middle from the camera, and its standard deviation.
 void addDistance(Json& json, const ObjectPlace& place, const Eigen::Vector3d& camera_world) {
   const Eigen::Vector3d way = place.center_world - camera_world;
   const double distance_m = way.norm();
@@ -98,7 +98,7 @@ Json outlinesJson(const std::vector<ShownOutline>& outlines) {
   return json;
 }
 
-/// Of each point the track, the left pixel and the place in the world.
+/// Track, left pixel and world position of each point.
 Json pointsJson(const std::vector<ShownPoint>& points) {
   Json json = Json::array();
   for (const ShownPoint& point : points)

@@ -7,10 +7,10 @@
 #include "apps/view/run_counts.hpp"
 #include "apps/view/shown_frame.hpp"
 
-/// What the server tells the page (docs/view.md), as JSON.
+/// Messages of the server to the page (docs/view.md), as JSON.
 namespace motorcade {
 
-/// What is being shown.
+/// The run that is being shown.
 struct ShownRun {
   std::string name{}, folder{};  // of the sequence; of the results
   bool recorded = false;         // a run that is over, so that every frame is there

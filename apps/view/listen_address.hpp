@@ -5,12 +5,12 @@
 
 namespace motorcade {
 
-/// Where a server listens.
+/// Address at which a server listens.
 struct ListenAddress {
   std::string host = "127.0.0.1";
   int port = 8080;  // 0 for any that is free
 
-  /// As it stands in URLs; an IPv6 address in brackets.
+  /// Text for URLs; an IPv6 address is in brackets.
   std::string text() const;
   /// Reachable from this machine alone.
   bool loopback() const;
@@ -20,11 +20,11 @@ struct ListenAddress {
   std::string localText() const;
 };
 
-/// Reads ADDR:PORT, ADDR, :PORT or PORT, with an IPv6 address in brackets; what is left out, or all, is as above.
+/// Reads ADDR:PORT, ADDR, :PORT or PORT, with an IPv6 address in brackets. Missing parts keep the defaults above.
 /// Throws UsageError, naming the option.
 ListenAddress parseListenAddress(std::string_view text, std::string_view option);
 
-/// The warning that an address other machines can reach deserves, in one line; empty for this machine's own.
+/// The warning for an address that other machines can reach, in one line; empty for this machine's own.
 std::string exposureWarning(const ListenAddress& address);
 
 }  // namespace motorcade

@@ -14,11 +14,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kResultsAhead = 64, kPicturesAhead = 16;
-/// A page that is loaded anew is away for a moment.
+/// Time without viewers after which a held run goes on. A page that is loaded anew is away for a moment.
 constexpr std::chrono::seconds kDeserted = 5s;
 constexpr int kNice = 10;
 
-/// The objects' points of this frame, at the distance that their disparity says.
+/// The objects' points of this frame, at the distances of their disparities.
 std::vector<ShownPoint> pointsOf(const FrameMeasurements& measurements, const FrameEstimate& online,
                                  const StereoCamera& camera) {
   std::vector<ShownPoint> points;
@@ -125,7 +125,7 @@ ShownFrame LiveView::shownOf(const Result& result) {
   return frame;
 }
 
-/// From the points at rest; before the first of them lie on a road, from the objects.
+/// Road plane from the points at rest, or from the objects before enough of those points lie on a road.
 std::optional<RoadPlane> LiveView::roadOf(const Result& result) {
   constexpr std::size_t kFewPoints = 12;
   const auto candidates = groundCandidates(*result.measurements, run_.camera);

@@ -17,27 +17,27 @@
 
 namespace motorcade {
 
-/// Shows a run on a page while it goes on. What the run tells is taken from bounded queues by a thread of the view's
-/// own; where that is too slow, it is the page that misses frames. Nothing is made for the page that nobody looks at.
+/// Shows a run on a page while it goes on. A thread of its own takes the run's data from bounded queues. If that is too
+/// slow, the page misses frames. Without viewers nothing is made for the page.
 class LiveView final : public RunListener, public PageSource {
  public:
-  /// The page's last frames, for those who come later or look back.
+  /// Number of the last frames that are kept for viewers who come later or look back.
   static constexpr std::size_t kKeptFrames = 600;
 
-  /// Listens at once. Throws OutputError where it cannot.
+  /// Listens at once. Throws OutputError if it cannot.
   LiveView(const ListenAddress& address, const ShownRun& run, const Sequence& sequence);
-  /// The page is told that the run is over.
+  /// Tells the page that the run is over.
   ~LiveView() override;
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
   /// URL of the page, with the token that holds the run if the run can be held.
   std::string url() const { return run_.can_pause ? server_->controlUrl() : server_->url(); }
-  /// What holds the replay; null where the run cannot be held.
+  /// Gate that holds the replay; null where the run cannot be held.
   ReplayGate* gate() { return run_.can_pause ? &gate_ : nullptr; }
   void frameEntered(const StereoFrame& frame) override;
   void frameLeft(const PipelineResult& result) override;
-  /// Asked from other threads where the pipeline stands, until it is taken back with an empty function.
+  /// Sets the function that other threads ask for the pipeline's state. An empty one takes it back.
   void followPipeline(std::function<PipelineState()> state);
 
  private:

@@ -23,11 +23,11 @@ namespace {
 using namespace std::chrono_literals;
 using httplib::Request, httplib::Response;
 
-/// A thread for each viewer, as their answers have no end, and some for all else.
+/// One thread for each viewer, as their answers have no end, and some for all others.
 constexpr std::size_t kThreads = Viewers::kMost + 16;
 constexpr int kNice = 10;
 constexpr std::size_t kMostFrames = 600;
-/// What a stalled viewer may have on its way: a few events.
+/// Bytes that may be on their way to a stalled viewer: a few events.
 constexpr int kSendBuffer_bytes = 256 * 1024;
 
 const httplib::Headers kHeaders{
@@ -67,7 +67,7 @@ std::int64_t numberOf(const std::string& text, std::int64_t otherwise) {
   return number;
 }
 
-/// What a browser reads as one server-sent event.
+/// Sends an event, or a comment that keeps the stream alive.
 bool send(httplib::DataSink& sink, std::string_view text) { return sink.write(text.data(), text.size()); }
 
 }  // namespace
@@ -193,7 +193,8 @@ void PageServer::Impl::routeRun(const std::string& path, const std::function<con
   });
 }
 
-/// The answer has no end while the run goes on; between events a comment tells whether the viewer is still there.
+/// Answers with events. The answer has no end while the run goes on; between events a comment tells whether the viewer
+/// is still there.
 void PageServer::Impl::answerEvents(Response& response) {
   const std::shared_ptr<Viewers::Seat> seat = viewers_.admit();
   if (!seat) {

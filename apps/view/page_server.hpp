@@ -13,7 +13,7 @@ namespace motorcade {
 /// it. Its threads give way to the pipeline's.
 class PageServer {
  public:
-  /// Throws OutputError, naming the address, where it cannot listen there. Warns in the log where others can reach it.
+  /// Throws OutputError, naming the address, if it cannot listen there. Logs a warning if other machines can reach it.
   PageServer(const ListenAddress& address, PageSource& source, Viewers& viewers);
   /// Closes the viewers' places and ends all answers under way within about a second.
   ~PageServer();
@@ -23,7 +23,7 @@ class PageServer {
   int port() const;
   /// URL of the page for a browser on this machine.
   std::string url() const;
-  /// The same with the token that holds the run. The browser sends what is behind `#` to nobody.
+  /// The same with the token that holds the run. The browser does not transmit the part behind `#`.
   std::string controlUrl() const;
 
  private:

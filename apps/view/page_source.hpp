@@ -9,16 +9,16 @@
 
 namespace motorcade {
 
-/// What the server asks whoever has the run, from several threads at once.
+/// Interface through which the server reads a run, from several threads at once.
 class PageSource {
  public:
   virtual ~PageSource() = default;
   virtual ShownRun run() const = 0;
   virtual RunSnapshot snapshot() const = 0;
-  /// `{"frames":[...]}` from a frame of the sequence on, at most `count` of those that are still known, without what
-  /// only the image shows.
+  /// `{"frames":[...]}` from a frame of the sequence on, at most `count` of those that are still known. Data that only
+  /// the image shows is left out.
   virtual std::string framesJson(std::int64_t from, std::size_t count) const = 0;
-  /// With all that there is; empty where the frame is not known any more.
+  /// One frame with all its data; empty where the frame is not known any more.
   virtual std::string frameJson(std::int64_t frame) const = 0;
   /// The run as a whole (docs/view.md); empty where it is not over.
   virtual std::string overviewJson() const { return ""; }

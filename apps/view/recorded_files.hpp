@@ -8,14 +8,14 @@
 
 #include "apps/view/shown_frame.hpp"
 
-/// What else lies in a run folder, by frame.
+/// Further files of a run folder, by frame.
 namespace motorcade {
 
-/// From `frames.csv`, by the names of its columns; lines that a killed run cut off are left out.
+/// Reads `frames.csv` by the names of its columns. Lines that a killed run cut off are left out.
 std::map<std::int64_t, ShownTiming> readTimings(const std::filesystem::path& run_folder);
 /// The lines of `outlines.jsonl`; none where the run did not write them.
 std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const std::filesystem::path& run_folder);
-/// Throws nothing: a line that is damaged gives no polygons.
+/// The outline of a line; a damaged line has no polygons. Does not throw.
 ShownOutline outlineOf(const std::string& line);
 
 }  // namespace motorcade

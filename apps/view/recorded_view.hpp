@@ -17,7 +17,7 @@ namespace motorcade {
 /// A run that is over, for the page.
 class RecordedView : public PageSource {
  public:
-  /// The run is shown in another world by `T_shown_run`, where it is compared with one that has that. Throws InputError
+  /// Shows the run in another world by `T_shown_run`, that of the run with which it is compared. Throws InputError
   /// naming the file that cannot be read.
   RecordedView(const RunFolder& run, const Sequence& sequence, const SE3& T_shown_run = SE3());
 
@@ -53,8 +53,8 @@ class RecordedView : public PageSource {
   std::unique_ptr<const RecordedView> against_;
 };
 
-/// Brings another run of the same drive into the world of the first one, by the first frame that both have. Throws
-/// InputError, naming both, where they have none in common.
+/// The transform that brings another run of the same drive into the world of the first one, by their first common
+/// frame. Throws InputError, naming both, if they have none.
 SE3 worldOfOther(const RunFolder& run, const RunFolder& other);
 
 }  // namespace motorcade

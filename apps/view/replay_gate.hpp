@@ -8,9 +8,9 @@
 
 namespace motorcade {
 
-/// Holds a replay where somebody who watches asks for it: pause, one pair more, go on. Any thread may ask; the replay's
-/// own thread passes before each pair. No wait is without an end: it also ends when the replay is stopped, and when
-/// nobody is there any more who could let it go on.
+/// Holds a replay when a viewer asks for it: pause, one pair more, go on. Any thread may ask; the replay's own thread
+/// passes before each pair. Every wait has an end: when the replay is stopped, and when no viewer is left who could let
+/// it go on.
 class ReplayGate {
  public:
   /// `deserted` is asked now and then while the replay is held.
@@ -25,7 +25,7 @@ class ReplayGate {
   void step();
   bool paused() const;
 
-  /// Returns how long the replay was held.
+  /// Waits while the replay is held, and returns how long that was.
   SteadyTime::duration pass(const std::stop_token& stopped);
 
  private:

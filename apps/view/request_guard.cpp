@@ -29,7 +29,7 @@ std::string machineName() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? lowered(name.data()) : "";
 }
 
-/// Takes the same time wherever they differ.
+/// Compares in constant time, wherever the texts differ.
 bool isSame(std::string_view a, std::string_view b) {
   unsigned char difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -37,7 +37,7 @@ bool isSame(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// Addresses cannot be given to another server's name, so that they are no way in for rebinding.
+/// True for an address. Another server's name cannot be an address, so that addresses are no way in for rebinding.
 bool isAddress(std::string_view host) {
   if (host.starts_with('[')) return host.ends_with(']');
   return !host.empty() && std::ranges::all_of(host, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });

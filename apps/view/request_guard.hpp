@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// What a request says of itself and of whom it comes from; what is missing is empty.
+/// Facts about a request and its origin; a missing header is empty.
 struct RequestFacts {
   std::string method, path;
   std::string host, origin, fetch_site;  // the headers Host, Origin and Sec-Fetch-Site
@@ -20,9 +20,8 @@ struct Refusal {
   std::string sentence;
 };
 
-/// Keeps other pages of the same browser out: a name that somebody else's server gives to this address (DNS rebinding)
-/// is no name of this server, another site's scripts may neither read nor control, and nothing but GET and HEAD is
-/// answered.
+/// Keeps other pages of the same browser out. A name that somebody else's server gives to this address (DNS rebinding)
+/// is no name of this server. Another site's scripts may neither read nor control. Only GET and HEAD are answered.
 class RequestGuard {
  public:
   explicit RequestGuard(const ListenAddress& listening);

@@ -11,7 +11,7 @@
 
 namespace motorcade {
 
-/// Upper bounds of the buckets of durations that are shown; what is longer has a bucket of its own.
+/// Upper bounds of the buckets of durations; longer ones have a bucket of their own.
 inline constexpr std::array<double, 18> kLatencyBounds_ms{1,  2,  3,  5,  7.5, 10,  15,  20,  25,
                                                           30, 40, 50, 75, 100, 150, 250, 500, 1000};
 
@@ -38,13 +38,13 @@ struct RunSnapshot {
 class RunCounts {
  public:
   void count(const PipelineResult& result);
-  /// A frame of a run that is over.
+  /// Counts a frame of a run that is over.
   void count(FrameStatus status);
   void countTimes(double latency_ms, double processing_ms) {
     latency_.add(latency_ms);
     processing_.add(processing_ms);
   }
-  /// Fills in what this has counted; received is what else the caller knows, or the sum.
+  /// Fills in the counts. `received` is the caller's, or the sum of the counts if that is larger.
   void read(RunSnapshot& snapshot) const;
 
  private:
@@ -63,7 +63,7 @@ class RunCounts {
   std::array<Buckets, kStageCount> stages_;
 };
 
-/// In Prometheus' text form (exposition format 0.0.4).
+/// Counts in Prometheus' text form (exposition format 0.0.4).
 std::string metricsText(const RunSnapshot& run);
 
 }  // namespace motorcade

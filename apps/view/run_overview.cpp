@@ -41,7 +41,7 @@ std::string_view statusOf(const FrameRow& row) {
   return degraded ? "degraded" : statusName(row.head.status);
 }
 
-/// Frames that are not simply good, those with the same cause in one.
+/// Frames that are not good; consecutive ones with the same cause are one mark.
 Json marksJson(const RunOverview& overview) {
   Json marks = Json::array();
   for (const auto& [frame, row] : overview.rows) {
@@ -152,7 +152,7 @@ Json truthOverview(const RunOverview& overview) {
           {"labels", labels}};
 }
 
-/// The first frames to look at, each with why.
+/// The first frames to look at, each with its reason.
 Json worstJson(const RunOverview& overview, std::vector<std::pair<std::int64_t, double>> times) {
   constexpr double kTenthOfMillimeter = 1e4;
   Json worst{{"camera", Json::array()}, {"objects", Json::array()}, {"late", Json::array()}};

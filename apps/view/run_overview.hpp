@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// A run that is over, from above: all that the page's timeline, map and lists need, in a few numbers per frame.
+/// Overview of a run that is over: the data of the page's timeline, map and lists, in a few numbers per frame.
 struct RunOverview {
   const RecordedDrive& drive;
   const std::map<std::int64_t, FrameRow>& rows;        // by frame of the sequence

@@ -99,7 +99,7 @@ std::vector<AskedLabel> askedLabels(const std::vector<ComparedFrame>& frames) {
   return all;
 }
 
-/// Keeps the largest of those that are close to each other; `errors` come with the largest first.
+/// Keeps the largest of errors that are close to each other; `errors` are sorted, the largest first.
 template <class Error>
 void thin(std::vector<Error>& errors) {
   std::vector<Error> kept;

@@ -11,14 +11,14 @@
 
 namespace motorcade {
 
-/// Frames from one to another in which something holds, both included.
+/// A range of frames with some property, both ends included.
 struct FrameSpan {
   std::int64_t from = 0, to = 0;
 };
 /// Spans of numbers that follow one another; `frames` in order.
 std::vector<FrameSpan> spansOf(const std::vector<std::int64_t>& frames);
 
-/// A label that is asked for in some frame: it moves there, well enough in view.
+/// A label that is asked for in some frame, where it moves and is well enough in view.
 struct AskedLabel {
   std::int64_t label = -1;
   std::string type{};

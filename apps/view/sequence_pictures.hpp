@@ -11,10 +11,10 @@
 
 namespace motorcade {
 
-/// As sharp as a page needs it.
+/// JPEG quality that is sharp enough for a page.
 inline constexpr int kPageJpegQuality = 78;
 
-/// The left images of a sequence as JPEG, read when somebody asks. Any thread may.
+/// The left images of a sequence as JPEG, read on demand from any thread.
 class SequencePictures {
  public:
   explicit SequencePictures(Sequence sequence) : sequence_(std::move(sequence)), reader_(sequence_) {}

@@ -30,14 +30,14 @@ struct ShownOutline {
   std::vector<Polygon> polygons;
 };
 
-/// How long a frame took.
+/// Times of a frame.
 struct ShownTiming {
   double latency_ms = 0, decode_ms = 0;
   std::array<double, kStageCount> stages_ms{};
 };
 
-/// A labeled object, as the camera of that frame truly had it before it: placed by the estimated camera, so that its
-/// distance from the estimate is what the camera saw wrong, without the drift of the path.
+/// A labeled object, placed by the estimated camera at its true pose relative to the true camera. Its distance from the
+/// estimate is the error as seen from the camera, without the drift of the path.
 struct ShownTrueObject {
   std::int64_t label = -1;
   std::string type{};
@@ -57,7 +57,7 @@ struct ShownTruth {
   std::vector<ShownTrueObject> objects{};
 };
 
-/// All that the page shows of one frame, but for the image; of a run that goes on and of one that is over alike.
+/// All data of one frame on the page, but for the image, of a running or finished run.
 struct ShownFrame {
   FrameEstimate estimate;
   std::vector<ShownOutline> outlines{};
@@ -67,7 +67,7 @@ struct ShownFrame {
   std::optional<ShownTruth> truth{};
 };
 
-/// The road as the objects on it tell: they stand on it upright. Empty where none has a cuboid.
+/// The road under the objects, which stand on it upright. Empty where none has a cuboid.
 std::optional<RoadPlane> roadUnder(const FrameEstimate& estimate);
 
 }  // namespace motorcade

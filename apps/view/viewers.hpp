@@ -12,16 +12,16 @@
 
 namespace motorcade {
 
-/// What is told to all viewers, made once.
+/// Text of an event, made once for all viewers.
 using EventText = std::shared_ptr<const std::string>;
 
-/// The pages that follow a run. Each has a mailbox for one event, the newest: a slow viewer loses events and delays
-/// neither the others nor who publishes. Any thread may call.
+/// The pages that follow a run. Each has a mailbox for one event, the newest. A slow viewer loses events and delays
+/// neither other viewers nor the publisher. Any thread may call.
 class Viewers {
  public:
   static constexpr std::size_t kMost = 8;
 
-  /// One viewer's place, given back with its last owner.
+  /// One viewer's seat, which is given back with its last owner.
   class Seat {
    public:
     explicit Seat(Viewers& viewers) : viewers_(viewers) {}
@@ -29,10 +29,10 @@ class Viewers {
     Seat(const Seat&) = delete;
     Seat& operator=(const Seat&) = delete;
 
-    /// The newest event not yet taken, waiting for one; null when none came in that time, or all have been taken and
-    /// no further one comes.
+    /// Waits for the newest event not yet taken. Null when none came within `patience`, or when all were taken and no
+    /// further one comes.
     EventText next(std::chrono::milliseconds patience);
-    /// No further event comes, and all were taken.
+    /// True when no further event comes and all were taken.
     bool over() const;
     /// Events that were replaced by newer ones before they were taken.
     std::int64_t missed() const;
@@ -44,15 +44,15 @@ class Viewers {
     std::int64_t missed_ = 0;
   };
 
-  /// Null when all places are taken, or the show is over.
+  /// Null when all seats are taken, or the show is over.
   std::shared_ptr<Seat> admit();
   void publish(const EventText& event);
-  /// No further event comes; ends all waits.
+  /// Ends all waits; no further event comes.
   void close();
 
   /// Waits for nobody.
   std::size_t count() const { return count_.load(std::memory_order_relaxed); }
-  /// How long nobody has been there; nothing while somebody is.
+  /// Time since the last viewer left; zero while one is there.
   std::chrono::steady_clock::duration absence() const;
 
  private:

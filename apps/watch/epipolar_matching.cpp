@@ -44,7 +44,7 @@ std::uint16_t leastOf(std::span<const std::uint16_t> costs) {
   return least;
 }
 
-/// The least cost that is not beside a place, or the greatest number.
+/// The least cost of positions that are not beside `best`, or the greatest number.
 std::uint16_t leastBesides(const RowCosts& costs, int count, Place best) {
   const int before = std::max(0, best.u - kBeside_px), after = std::min(count, best.u + kBeside_px + 1);
   std::uint16_t least = UINT16_MAX;
@@ -58,7 +58,7 @@ std::uint16_t leastBesides(const RowCosts& costs, int count, Place best) {
   return least;
 }
 
-/// Finds the place in another image most like the window, within a few rows of it; empty if it is ambiguous.
+/// Finds the position in another image most like the window, within a few rows of it; empty if it is ambiguous.
 std::optional<Place> searchArea(const Window& window, const Image& other, Columns columns) {
   const int half_columns = window.size.columns / 2, half_rows = window.size.rows / 2;
   columns.first = std::max(columns.first, half_columns);
@@ -85,7 +85,7 @@ std::optional<Place> searchArea(const Window& window, const Image& other, Column
   return Place{columns.first + best.u, window.v + best.v - kRows_px};
 }
 
-/// The place in the right image at a quarter of the size, on which both directions of search agree.
+/// The position in the right image at a quarter of the size, on which both directions of search agree.
 std::optional<Place> searchBothWays(const Image& left, const Image& right, Place from) {
   const Window window{left, from.u, from.v, kHalfSizeWindow};
   if (!window.insideImage()) return std::nullopt;
@@ -127,7 +127,7 @@ Image stretched(const Image& image, const Levels& from, const Levels& to, ImageP
   return result;
 }
 
-/// Gives the fainter image the contrast of the other where theirs differ much, as windows are compared gray by gray.
+/// Gives the fainter image the contrast of the other if the two differ much, as windows are compared gray by gray.
 void equalize(Image& left, Image& right, ImagePool& pool) {
   constexpr double kAlike = 1.5, kFaintest = 1;
   const Levels of_left = levelsOf(left), of_right = levelsOf(right);
@@ -136,7 +136,7 @@ void equalize(Image& left, Image& right, ImagePool& pool) {
   if (of_right.deviation > kAlike * of_left.deviation) left = stretched(left, of_left, of_right, pool);
 }
 
-/// At a lower threshold where there are few, as in images that are dark or blurred.
+/// Detects corners, with a lower threshold where there are few, as in images that are dark or blurred.
 std::vector<Corner> cornersOf(const Image& image) {
   constexpr std::size_t kFew = 60;
   constexpr double kFaintShare = 1.0 / 3;

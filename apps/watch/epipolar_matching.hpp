@@ -21,14 +21,14 @@ struct PreparedPair {
   std::vector<Corner> corners;
 };
 
-/// Takes the corners of the left image at half size: they are as good, and found at a quarter of the cost. Where one
-/// image has far less contrast, it is given the other's.
+/// Takes the corners of the left image at half size: they are as good, and found at a quarter of the cost. An image
+/// with far less contrast is given the other's.
 PreparedPair preparePair(Image left, Image right, ImagePool& pool);
 
-/// Matches at most so many corners of the left image, spread over it, with the right one, up to 20 rows above or below
-/// and whatever the sign of the disparity: images that are exchanged, turned or shifted are matched too. What is not
-/// unique, or not found again from right to left, is left out. Both pyramids have three levels or more, or nothing is
-/// found.
+/// Matches at most `points` corners of the left image, spread over it, with the right one. The search covers 20 rows
+/// above and below and either sign of the disparity, so that images that are exchanged, turned or shifted are matched,
+/// too. Matches that are ambiguous, or are not found again from right to left, are left out. Both pyramids need at
+/// least three levels, or nothing is found.
 std::vector<EpipolarMatch> matchUnrectified(const ImagePyramid& left, const ImagePyramid& right,
                                             const std::vector<Corner>& corners, std::size_t points);
 

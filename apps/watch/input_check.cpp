@@ -15,12 +15,12 @@ namespace {
 
 /// Least share of matches in their row if rows agree: over 0.8 on all drives at hand, under 0.6 when a frame apart.
 constexpr double kInRowShare = 0.75;
-// Effects on the rows from which on an error is told, and from which on results are worthless [px].
+// Effects on the rows above which an error is reported, and above which results are worthless [px].
 constexpr double kTold_px = 0.8, kWorthless_px = 1.2;
 constexpr double kTogether_px = 1.5;  // of all errors; good calibrations stay below 0.6
 constexpr double kSure = 5;           // standard deviations
 constexpr double kSureDistorted = 4;  // as the least displacement below asks for much already
-/// Displacement in the corner of the image from which on distortion is told: good calibrations stay below the half
+/// Displacement in the corner of the image above which distortion is reported: good calibrations stay below half of it
 /// [px].
 constexpr double kDistorted_px = 20;
 
@@ -41,7 +41,7 @@ double meanGray(const Image& image) {
 
 double degrees(double angle_rad) { return angle_rad * 180 / std::numbers::pi; }
 
-/// How an error of the rows is told, with value and standard deviation in the format's units.
+/// Format of an error of the rows: value and standard deviation are in its units.
 struct RowErrorText {
   RowError error;
   const char* name;
@@ -59,7 +59,7 @@ const std::array kRowErrorTexts{
     RowErrorText{RowError::kLift, "lift", "the right camera stands higher by %.1f (+-%.1f) %% of the baseline", 100},
     RowErrorText{RowError::kAhead, "ahead", "the right camera stands ahead by %.1f (+-%.1f) %% of the baseline", 100}};
 
-/// Matches that lie clearly before the cameras, and clearly behind them.
+/// Numbers of matches clearly before the cameras, and clearly behind them.
 std::pair<double, double> aheadAndBehind(std::span<const EpipolarMatch> matches) {
   constexpr double kClear_px = 1.5, kRow_px = 3;
   std::pair<double, double> counts{0, 0};
@@ -100,7 +100,7 @@ void InputCheck::observeLight(const StereoFrame& pair) {
   if (const auto grain = grainOf(pair.right)) right_grains_.push_back(*grain);
 }
 
-/// Matches anew only where the pair's own rows agree badly, as it costs as much again, twice.
+/// Matches with the neighboring pairs only if the pair's own rows agree badly, as it costs as much again, twice.
 void InputCheck::compareWithNeighbors(const PreparedPair& now, std::span<const EpipolarMatch> matches) {
   constexpr double kBetter = 1.5;
   constexpr std::size_t kFew = 15, kPoints = 150;
@@ -135,7 +135,8 @@ std::vector<Finding> InputCheck::rigFindings() const {
   return findings;
 }
 
-/// A few pairs alone are bridged by a run: they make results worse, not worthless.
+/// Reports pairs whose images belong to different pairs. A few such pairs make results worse, not worthless, as a run
+/// bridges them.
 std::optional<Finding> InputCheck::apart() const {
   constexpr std::size_t kMinPairs = 3;
   const std::size_t most = std::max(apart_.before, apart_.after);
@@ -147,7 +148,7 @@ std::optional<Finding> InputCheck::apart() const {
                  4 * most >= apart_.compared};
 }
 
-/// Images taken at moments that lie a part of the frames' distance apart fit those of no other pair better.
+/// Reports images that fit those of no other pair better. They were taken apart by a part of the frames' distance.
 std::optional<Finding> InputCheck::incoherent(const PairGeometry& geometry) const {
   constexpr double kAgreeingShare = 0.75;
   if (geometry.agreeing_share > kAgreeingShare || 2 * apart_.bad < apart_.compared) return std::nullopt;
@@ -175,7 +176,7 @@ std::optional<Finding> InputCheck::exchanged() const {
                  true};
 }
 
-/// Errors that are told apart by nothing in view, as before a wall, are unsure each, but not together.
+/// Adds row errors. Errors that nothing in view separates, as before a wall, are uncertain each, but not together.
 void InputCheck::addRowErrors(const PairGeometry& geometry, std::vector<Finding>& findings) {
   const RowErrorEstimate& barrel = geometry[RowError::kBarrel];
   if (barrel.effect_px > kDistorted_px && std::abs(barrel.value) > kSureDistorted * barrel.sigma)

@@ -12,14 +12,14 @@
 
 namespace motorcade {
 
-/// What is wrong with the pairs of a rig, in a sentence that says what was measured, what it means and how to mend it.
+/// A fault of the pairs of a rig, in a sentence that says what was measured, what it means and how to mend it.
 struct Finding {
   std::string name;  // one word, as in docs/formats.md
   std::string text;
   bool worthless = false;  // results would be
 };
 
-/// How bright the images of the pairs so far are, and how much they differ.
+/// Brightness of the images of the pairs so far, and its differences.
 struct LightMeasures {
   double left_level = 0, right_level = 0;  // gray levels, means
   double jump = 1;                         // largest ratio from one pair to the next, of the left images
@@ -38,7 +38,7 @@ struct LookedAt {
   std::span<const EpipolarMatch> matches;
 };
 
-/// Looks at pairs of a drive for what makes a stereo camera useless without a word: rows that do not agree, images
+/// Checks pairs of a drive for faults that silently make a stereo camera useless: rows that do not agree, images
 /// exchanged or taken at different times, distortion left in, exposure and times that jump, blur. Takes about a third
 /// as long per pair as following it. Call in the order of the frames.
 class InputCheck {
@@ -48,22 +48,22 @@ class InputCheck {
   /// Judges by so many pairs.
   explicit InputCheck(const StereoCamera& camera, std::size_t pairs = kPairs) : camera_(camera), wanted_(pairs) {}
 
-  /// Pairs that lack an image, show hardly a point that both eyes see, or come after their turn are passed over, and so
-  /// are those after enough were seen.
+  /// Looks at a pair, unless enough were seen. Passes over pairs that lack an image, show hardly a point that both eyes
+  /// see, or come after their turn.
   void observe(const StereoFrame& pair);
   bool complete() const { return pairs_ >= wanted_; }
 
-  /// Of the pairs so far.
+  /// Geometry of the pairs so far.
   PairGeometry geometry() const { return estimatePairGeometry(matches_, camera_); }
   std::size_t pairs() const { return pairs_; }
   std::span<const EpipolarMatch> matches() const { return matches_; }
-  /// As long as no other pair is observed.
+  /// Matches by pair, valid until another pair is observed.
   std::vector<LookedAt> looks() const;
   LightMeasures light() const;
   TimeMeasures times() const;
-  /// Of the pairs so far; empty where all is well.
+  /// Findings on the pairs so far; empty where all is well.
   std::vector<Finding> findings() const;
-  /// Those of them that tell of the cameras' places, order and moments.
+  /// The findings on the cameras' positions, order and capture times.
   std::vector<Finding> rigFindings() const;
 
  private:
@@ -95,10 +95,10 @@ class InputCheck {
   std::vector<Timestamp> stamps_;
 };
 
-/// True of images that are there, both.
+/// True if both images exist.
 inline bool isWhole(const StereoFrame& pair) { return !pair.rejected() && !pair.left.empty() && !pair.right.empty(); }
 
-/// True where more of the points lie behind the cameras than before them, clearly: left is right.
+/// True if clearly more of the points lie behind the cameras than before them: left and right are exchanged.
 bool looksExchanged(std::span<const EpipolarMatch> matches);
 
 }  // namespace motorcade

@@ -7,18 +7,18 @@
 
 namespace motorcade {
 
-/// "fills 19 % of the left image (columns 0 to 1241, rows 304 to 374)", as a sentence goes on after its subject.
+/// "fills 19 % of the left image (columns 0 to 1241, rows 304 to 374)": the end of a sentence after its subject.
 std::string placeOf(const OwnVehicleView& view);
 
-/// Tells once what was found of the own vehicle: two seconds after its first part, in which it grows.
+/// Reports the own vehicle once: two seconds after its first part was found, as it grows meanwhile.
 class OwnVehicleNews {
  public:
-  /// Takes the frames in order. A sentence when there is something to tell.
+  /// Takes the frames in order. Returns a sentence when there is something to report.
   std::optional<std::string> observe(const FrameMeasurements& frame);
-  /// No further frame comes: what was not told yet.
+  /// Returns the sentence that was not reported yet; no further frame comes.
   std::optional<std::string> finish();
 
-  /// What was found last; empty while nothing is.
+  /// The latest view of the own vehicle; empty while none was found.
   const std::optional<OwnVehicleView>& view() const { return view_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// Looks for the own vehicle in the pairs of a drive, in order, with the stages of a run that find it.
+/// Searches for the own vehicle in the pairs of a drive, in order, with the stages of a run that find it.
 class OwnVehicleSearch {
  public:
   explicit OwnVehicleSearch(const StereoCamera& camera) : prepare_({}), match_({}), follow_({}), segment_({}, camera) {}

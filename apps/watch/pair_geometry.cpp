@@ -16,12 +16,13 @@ using Row = Eigen::Matrix<double, 1, kSize>;
 using Vector = Eigen::Matrix<double, kSize, 1>;
 using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-/// What a rig may have, in the order of RowError: 20 px, 5 degrees, 10 %, 5 degrees, a fifth of the baseline, k1.
+/// Prior sigmas of a rig, in the order of RowError: 20 px, 5 degrees, 10 %, 5 degrees, a fifth of the baseline, k1.
 const Vector kPriorSigmas = (Vector() << 20, 0.09, 0.1, 0.09, 0.2, 0.2, 0.4).finished();
 constexpr double kScale_px = 0.4;  // residuals well above lose their weight
 constexpr double kAgreeing_px = 1.2;
 constexpr int kIterations = 30;
-/// Matches of successive frames show the same points: the effective number is less.
+/// Factor on the standard deviations. Matches of successive frames show the same points, so that their effective number
+/// is smaller.
 constexpr double kCorrelation = 3;
 
 Row derivatives(const EpipolarMatch& match, const StereoCamera& camera) {

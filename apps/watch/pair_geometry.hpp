@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// What makes the rows of a pair differ, to first order. With x, y the left pixel's normalized coordinates, d the
-/// disparity and x_r = x - d / f, the row in the right image less that in the left one is
+/// Causes of row differences in a pair, to first order. x, y are the left pixel's normalized coordinates, d is the
+/// disparity and x_r = x - d / f. The row in the right image less that in the left one is
 ///   offset (1 + y^2) + f roll x + f zoom y + f yaw x y + (lift + ahead y) d + f k1 y (x_r^2 - x^2)
 enum class RowError {
   kOffset,  // px, at the principal point: pitch between the cameras, or another crop
@@ -39,11 +39,11 @@ struct PairGeometry {
   const RowErrorEstimate& operator[](RowError error) const { return errors[static_cast<std::size_t>(error)]; }
 };
 
-/// Robust least squares (Cauchy weights) over the matches of several pairs of one rig. Errors that they do not show
-/// stay at zero, with the standard deviation of what a rig may have.
+/// Robust least squares (Cauchy weights) over the matches of several pairs of one rig. Errors that the matches do not
+/// show stay at zero, with their prior standard deviation.
 PairGeometry estimatePairGeometry(std::span<const EpipolarMatch> matches, const StereoCamera& camera);
 
-/// The row in the right image less that in the left one, of a point there with that disparity.
+/// The row in the right image less that in the left one, of a point at this left pixel and disparity.
 double predictedRowError_px(const PairGeometry& geometry, const StereoCamera& camera, double u_left_px,
                             double v_left_px, double disparity_px);
 

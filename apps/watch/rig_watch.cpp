@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// Points of a glance, and the fewest matches by which it tells anything.
+/// Points of a glance, and the fewest matches by which it decides.
 constexpr std::size_t kGlancePoints = 80, kFewestOfGlance = 15;
 /// Least share of matches that lie within a pixel of the row predicted by the rig's usual geometry. The share is over
 /// 0.8 on all drives at hand, and under 0.6 where images are a frame apart.
@@ -37,7 +37,7 @@ std::vector<RigFinding> RigWatch::finish() {
   return enough ? judge() : std::vector<RigFinding>{};
 }
 
-/// Begins to look at pairs one by one where this one disagrees with what the rig was.
+/// Starts a check, pair by pair, if this pair disagrees with the usual rig.
 void RigWatch::glance(const StereoFrame& pair) {
   if (!isWhole(pair) || --until_glance_ > 0) return;
   until_glance_ = patience_;
@@ -54,7 +54,7 @@ void RigWatch::glance(const StereoFrame& pair) {
   }
 }
 
-/// Also where there is too little to tell.
+/// True if the rows agree. The verdict stays if there are too few matches to decide.
 bool RigWatch::agrees(const StereoFrame& pair) {
   const PreparedPair now = preparePair(pair.left, pair.right, pool_);
   const auto matches = matchUnrectified(now.left, now.right, now.corners, kGlancePoints);
@@ -68,7 +68,7 @@ bool RigWatch::agrees(const StereoFrame& pair) {
          static_cast<double>(agreeing) >= kAgreeingShare * static_cast<double>(matches.size());
 }
 
-/// The rig as it is becomes the usual one, unless it is worthless.
+/// Judges the rig. It becomes the usual one, unless it is worthless or has too few matches.
 std::vector<RigFinding> RigWatch::judge() {
   const InputCheck check = *std::exchange(check_, std::nullopt);
   std::vector<RigFinding> found;

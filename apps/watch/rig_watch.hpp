@@ -10,8 +10,8 @@
 
 namespace motorcade {
 
-/// Something found wrong with a drive's pairs. It began after `last_good`, which is none in the first pairs, and at the
-/// latest with `first_bad`.
+/// A fault of a drive's pairs. It began after `last_good`, which is none in the first pairs, and at the latest with
+/// `first_bad`.
 struct RigFinding {
   Finding finding;
   std::optional<FrameId> last_good;
@@ -22,8 +22,8 @@ struct RigFinding {
 };
 
 /// Watches the pairs of a whole drive for a rig that is wrong, or becomes so. The first pairs are looked at as `check`
-/// does. After them one pair in five gets a glance; where its rows disagree, the next twelve are looked at like the
-/// first. A change that lasts is so found within twenty pairs. Call in the order of the frames.
+/// does. After them one pair in five gets a glance. If its rows disagree, the next twelve are looked at like the first.
+/// A lasting change is found within twenty pairs. Call in the order of the frames.
 class RigWatch {
  public:
   static constexpr int kGlanceEvery = 5;          // pairs; odd, as what is wrong may be so in every second pair

@@ -10,7 +10,7 @@ namespace {
 constexpr int kMostSentences = 10;    // of a sensor that comes and goes
 constexpr double kLooksAlike = 0.05;  // of a ratio
 
-/// A guess at what is wrong with a motion that is told, in words that end a sentence.
+/// A guess at the fault of the vehicle's motion, as the end of a sentence.
 std::string guessAt(const VehicleSensors& sensors) {
   constexpr double kKilometersPerHour = 3.6, kMilesPerHour = 2.237, kFeetPerSecond = 3.281, kDegreesPerRadian = 57.3;
   const auto isTimes = [](double told, double seen, double factor) {

@@ -7,10 +7,10 @@
 
 namespace motorcade {
 
-/// Tells when the vehicle's own motion is left out, as it contradicts the camera, and when it is heard again.
+/// Reports when the vehicle's own motion is left out, as it contradicts the camera, and when it is used again.
 class VehicleMotionNews {
  public:
-  /// Takes the frames in order. A sentence when there is something to tell; no more than a few in a drive.
+  /// Takes the frames in order. Returns a sentence when there is something to report, no more than a few per drive.
   std::optional<std::string> observe(const FrameMeasurements& frame);
 
   /// The newest findings; empty where there are no such sensors.

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first pairs as far as they tell of the whole.
+/// The first pairs, and the facts about the whole drive that they tell.
 struct FirstPairs {
   std::vector<std::int64_t> stamps_ns{};
   ImageHeader header{};
@@ -55,7 +55,7 @@ struct FirstPairs {
                    ". A file with one topic behind the other is put in order by\n  mcap sort BAG.mcap -o SORTED.mcap");
 }
 
-/// Reads up to the pairs that tell the rate, and on to the camera_info where that comes late.
+/// Reads until the pairs tell the rate, and on to the camera_info where that comes later.
 FirstPairs readFirstPairs(BagPairs& pairs, bool infos_needed) {
   constexpr std::size_t kPairs = 16, kPairsWithoutInfo = 300;
   FirstPairs first;

@@ -19,8 +19,8 @@ struct BagDrive {
 };
 
 /// Reads a bag up to its first pairs, and to both cameras' camera_info unless the user gives the calibration. Throws
-/// InputError, and UsageError where `topics`, as the user wrote them, are none of the bag's, or are empty: the message
-/// then lists those that there are.
+/// InputError. Throws UsageError where `topics`, as the user wrote them, are empty or not among the bag's; the message
+/// then lists the bag's topics.
 BagDrive openBagDrive(const std::filesystem::path& bag, const std::string& topics, const GivenCameras& given);
 
 }  // namespace motorcade

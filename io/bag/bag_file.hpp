@@ -18,9 +18,9 @@ class BagFile {
   std::uint64_t position() const { return position_; }
   std::uint64_t size() const { return size_; }
   std::uint64_t left() const { return size_ - position_; }
-  /// Within the file.
+  /// Moves to a position within the file.
   void moveTo(std::uint64_t position);
-  /// Fills `bytes`, of which there are no more than are left.
+  /// Fills `bytes`, which must not be larger than `left()`.
   void read(std::span<std::uint8_t> bytes);
 
   const std::string& name() const { return name_; }

@@ -11,11 +11,11 @@
 
 namespace motorcade {
 
-/// An image's message, taken out of a bag to wait for its partner. Throws InputError naming the message.
+/// A message with an image, copied from a bag to wait for its partner. Throws InputError naming the message.
 class BagImage {
  public:
   BagImage() = default;
-  /// `bag` is the file's name. A message without a time in its head has that of its recording.
+  /// `bag` is the file's name. A message without a time in its header takes that of its recording.
   BagImage(const std::string& bag, const BagTopic& topic, const BagMessage& message);
 
   const std::string& name() const { return name_; }

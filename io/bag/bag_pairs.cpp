@@ -31,7 +31,7 @@ std::optional<BagPair> BagPairs::next() {
   return std::nullopt;
 }
 
-/// Gives the pair that a message completes. One that is no later than the pair before is left out.
+/// Returns the pair that a message completes. Drops a pair that is no later than the previous one.
 std::optional<BagPair> BagPairs::take(const BagMessage& message) {
   const BagTopic& topic = bag_->topics()[message.topic];
   const bool left = topic.name == topics_.left;
@@ -54,7 +54,7 @@ std::optional<BagPair> BagPairs::take(const BagMessage& message) {
   return pair;
 }
 
-/// Stamps of strangers may be anything: a difference that no number holds counts as the largest.
+/// Stamps from unknown sources may have any value. A difference that overflows counts as the largest.
 void BagPairs::noteDistance(StereoSide side, std::int64_t stamp_ns) {
   stamps_ns_[indexOf(side)] = stamp_ns;
   const auto other_ns = stamps_ns_[indexOf(otherThan(side))];

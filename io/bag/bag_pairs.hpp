@@ -21,8 +21,8 @@ using BagPair = StampPairing<BagImage>::Pair;
 /// The pairs of images of a bag in the order of their stamps, which are the left images'. One thread reads.
 class BagPairs {
  public:
-  /// Cameras with a common trigger have the same stamps, or differ by what their driver takes; at 5 ms a car of 20 m/s
-  /// has driven a decimeter.
+  /// Tolerance of a pair's stamps. Cameras with a common trigger have the same stamps, or differ by their drivers'
+  /// delay. In 5 ms a car at 20 m/s drives a decimeter.
   static constexpr std::int64_t kTolerance_ns = 5'000'000;
 
   enum class Infos { kTake, kLeaveOut };

@@ -32,7 +32,7 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
 
-  /// The topics known so far: those that the file lists, or whose messages were read. Their places do not change.
+  /// The topics known so far: those that the file lists, or whose messages were read. Their indices do not change.
   virtual const std::vector<BagTopic>& topics() const = 0;
   /// Leaves out the messages of all other topics, from now on.
   virtual void select(std::set<std::string> topics) = 0;

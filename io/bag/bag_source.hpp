@@ -17,9 +17,9 @@
 
 namespace motorcade {
 
-/// The pairs of a bag, read, decoded and rectified on a thread of its own, a bounded number ahead of whoever takes
-/// them. A pair that cannot be decoded comes out without images and with its `problem`. A bag that is damaged gives the
-/// pairs before.
+/// The pairs of a bag, read, decoded and rectified on a thread of its own, a bounded number ahead of the consumer. A
+/// pair that cannot be decoded comes out without images and with its `problem`. A damaged bag gives the pairs before
+/// the damage.
 class BagSource final : public PairSource {
  public:
   struct Params {

@@ -18,8 +18,8 @@ ImageTopics parseImageTopics(const std::string& text);
 /// A line for each topic, beginning with the line's end before it.
 std::string topicsText(const std::vector<BagTopic>& topics);
 
-/// Throws UsageError with all topics of a bag, and those that are likely meant; reads on where the bag does not list
-/// them before.
+/// Throws UsageError that lists all topics of a bag and the likely ones. Reads on where the bag has not listed them
+/// yet.
 [[noreturn]] void failWithTopics(BagReader& bag, const std::string& what);
 
 }  // namespace motorcade

@@ -9,7 +9,7 @@
 
 namespace motorcade::mcap {
 
-/// A buffer that keeps its room. Its bytes are not written before they are used.
+/// A buffer that keeps its capacity. Its bytes are not initialized.
 class ByteBuffer {
  public:
   std::span<std::uint8_t> ofSize(std::size_t size);
@@ -19,11 +19,11 @@ class ByteBuffer {
   std::size_t room_ = 0;
 };
 
-/// Larger records and chunks are refused: a few bytes may tell of more than the memory.
+/// Larger records and chunks are refused: a few bytes may claim more than the memory.
 inline constexpr std::size_t kMostRecord_bytes = std::size_t{256} << 20;
 
-/// The records of a chunk: `size` bytes, uncompressed, by a compression's name (empty for none, `zstd`, `lz4`). They
-/// are those of `compressed` or of `buffer`. Throws InputError that begins with `place`.
+/// The records of a chunk: `size` bytes once uncompressed. The compression is named `zstd`, `lz4`, or empty for none.
+/// The result points into `compressed` or `buffer`. Throws InputError that begins with `place`.
 std::span<const std::uint8_t> chunkRecords(std::string_view compression, std::span<const std::uint8_t> compressed,
                                            std::uint64_t size, ByteBuffer& buffer, const std::string& place);
 

@@ -26,7 +26,8 @@ Db3Reader::Db3Reader(const std::filesystem::path& file) : name_(file.string()) {
   requireTable("topics");
   requireTable("messages");
   readTopics();
-  // rosbag2 keeps an index by time. Without it, these few numbers are put in order, in a temporary file if need be.
+  // Rows are read in the order of time. Without rosbag2's index, SQLite sorts these few numbers, in a temporary file if
+  // need be.
   order_ = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY timestamp, rowid");
   data_ = prepare("SELECT data FROM messages WHERE rowid = ?");
 }
@@ -38,8 +39,8 @@ void Db3Reader::fail(const std::string& what) const {
                    what);
 }
 
-/// A database from strangers can do nothing but be read. One that was cut off is refused as a whole, unless its schema
-/// may be written, which nothing here does.
+/// Opens the database so that it can only be read, as it may come from an unknown source. One that was cut off is
+/// refused as a whole, unless its schema may be written, which nothing here does.
 void Db3Reader::open() {
   sqlite3* database = nullptr;
   const int outcome = sqlite3_open_v2(name_.c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
@@ -66,7 +67,7 @@ bool Db3Reader::step(sqlite3_stmt* statement) {
   return outcome == SQLITE_ROW;
 }
 
-/// A view of that name could compute without end.
+/// Requires a table, as a view of that name could compute without end.
 void Db3Reader::requireTable(const std::string& table) {
   const Statement kind = prepare("SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = '" + table + "'");
   if (!step(kind.get())) fail("has no table " + table + ": it is no rosbag2 database");

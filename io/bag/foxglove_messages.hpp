@@ -7,7 +7,7 @@
 #include "io/messages/camera_info_message.hpp"
 #include "io/messages/image_message.hpp"
 
-/// Foxglove's RawImage, CompressedImage and CameraCalibration in Protobuf, as the messages of ROS that they stand for.
+/// Foxglove's RawImage, CompressedImage and CameraCalibration in Protobuf, converted to the equivalent messages of ROS.
 /// Throws InputError that begins with `name`. The bytes of images remain the message's.
 namespace motorcade {
 

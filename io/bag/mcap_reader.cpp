@@ -40,7 +40,7 @@ McapReader::McapReader(const std::filesystem::path& file) : file_(file) {
 
 void McapReader::select(std::set<std::string> topics) { selected_ = std::move(topics); }
 
-/// Gives the length of what follows.
+/// Returns the length of the record's content.
 std::uint64_t McapReader::readHead(Record& record) {
   record.position = file_.position();
   std::array<std::uint8_t, kHead_bytes> head{};
@@ -147,7 +147,7 @@ std::optional<BagMessage> McapReader::next() {
   return std::nullopt;
 }
 
-/// Notes what a record tells; gives the message where it is one that is wanted.
+/// Processes a record; returns the message if it is a wanted one.
 std::optional<BagMessage> McapReader::take(const Record& record) {
   switch (record.opcode) {
     case Opcode::kSchema:
@@ -174,7 +174,7 @@ void McapReader::addSchema(const Record& record) {
   schemas_[number] = fields.text();
 }
 
-/// A channel may come again, in each chunk and in the summary; several may have one topic.
+/// Adds a channel. It may come again, in each chunk and in the summary; several channels may have one topic.
 void McapReader::addChannel(const Record& record) {
   const std::string place = file_.placeOf(record.position);
   RecordFields fields(record.content, place);

@@ -18,7 +18,7 @@ std::uint64_t ProtobufFields::fixed(std::size_t size) {
   return value;
 }
 
-/// Seven bits a byte, the lowest first; the eighth tells that more come.
+/// Reads seven bits per byte, the lowest first. The eighth says that more follow.
 std::uint64_t ProtobufFields::varint() {
   constexpr unsigned kMost_bits = 64;
   std::uint64_t value = 0;

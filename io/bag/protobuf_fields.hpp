@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// Takes the fields of a Protobuf message one by one, whatever its schema. What is no such message is an InputError
-/// that begins with `name`.
+/// Takes the fields of a Protobuf message one by one, whatever its schema. Throws InputError that begins with `name`
+/// for anything else.
 class ProtobufFields {
  public:
   struct Field {

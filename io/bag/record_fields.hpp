@@ -8,8 +8,8 @@
 
 namespace motorcade::mcap {
 
-/// Takes fields from the front of a record's bytes: numbers with the lowest byte first, strings after their length.
-/// A field that would lie beyond the record is an InputError that begins with `place`.
+/// Takes fields from the front of a record's bytes: numbers with the lowest byte first, strings after their length. A
+/// field beyond the record's end is an InputError that begins with `place`.
 class RecordFields {
  public:
   RecordFields(std::span<const std::uint8_t> record, const std::string& place) : rest_(record), place_(place) {}

@@ -10,19 +10,19 @@
 #include "io/messages/camera_info_message.hpp"
 #include "io/messages/image_message.hpp"
 
-/// Messages of ROS' sensor_msgs as they stand in a bag, and Foxglove's of the same meaning. Those of ROS 1 and ROS 2
-/// have the same fields, but for a counter in the head of the former. Throws InputError that begins with `name`.
+/// Messages of ROS' sensor_msgs as stored in a bag, and Foxglove's of the same meaning. ROS 1 and ROS 2 have the same
+/// fields, but for a counter in the header of ROS 1. Throws InputError that begins with `name`.
 namespace motorcade {
 
 enum class SensorMessage { kImage, kCompressedImage, kCameraInfo };
 
-/// The message that a type is, by its name in ROS 1 (`sensor_msgs/Image`), ROS 2 (`sensor_msgs/msg/Image`) or of
-/// Foxglove's (`foxglove.RawImage`).
+/// The message of a type, named as in ROS 1 (`sensor_msgs/Image`), ROS 2 (`sensor_msgs/msg/Image`) or Foxglove
+/// (`foxglove.RawImage`).
 std::optional<SensorMessage> sensorMessageNamed(std::string_view type);
 /// `cdr`, `ros1` or `protobuf`; empty for other encodings.
 std::optional<WireFormat> wireFormatNamed(std::string_view encoding);
 
-/// The time of the head, with which each of them begins; 0 where the sender left it out.
+/// The time of the header, with which each of them begins; 0 where the sender left it out.
 std::int64_t stampOfMessage(WireReader reader);
 
 /// The bytes of images remain the message's.

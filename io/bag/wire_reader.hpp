@@ -9,14 +9,14 @@
 
 namespace motorcade {
 
-/// Ways in which the fields of a message are written.
+/// Encodings of a message's fields.
 enum class WireFormat {
   kCdr,       // ROS 2: aligned, with a head that tells the order of bytes
   kRos1,      // packed, lowest byte first
   kProtobuf,  // Foxglove's; its fields are taken by ProtobufFields
 };
 
-/// Takes a message's fields one by one. Whatever would lie beyond its bytes is an InputError that begins with `name`.
+/// Takes a message's fields one by one. A field beyond its bytes is an InputError that begins with `name`.
 class WireReader {
  public:
   WireReader(std::span<const std::uint8_t> message, WireFormat format, std::string name);
@@ -30,7 +30,7 @@ class WireReader {
   double f64();
   void fill(std::span<double> values);
   std::string text();
-  /// Bytes, as many as a count before them tells.
+  /// Bytes, preceded by their count.
   std::span<const std::uint8_t> bytes() { return take(u32()); }
   std::vector<double> doubles(std::size_t most);
 

@@ -27,13 +27,12 @@ struct InputFile {
   FileDescriptor descriptor;
   std::size_t bytes;
 };
-/// Opens a regular file, or a link to one. A folder, a FIFO, a socket or a device is refused, none is waited for.
-/// Throws InputError.
+/// Opens a regular file, or a link to one. A folder, a FIFO, a socket or a device is refused without waiting. Throws
+/// InputError.
 InputFile openInput(const std::filesystem::path& file);
 
-/// Makes a file anew, beside what has its name before, and takes that name: a link is replaced and not followed, and
-/// whoever reads the file before goes on reading it. What is neither a regular file nor a link is refused. Throws
-/// OutputError.
+/// Creates a file anew beside an existing one and takes its name. A link is replaced and not followed; a reader of the
+/// previous file goes on reading that. Anything but a regular file or a link is refused. Throws OutputError.
 FileDescriptor createOutput(const std::filesystem::path& file);
 
 }  // namespace motorcade

@@ -18,7 +18,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
   if (::flock(descriptor_.number(), LOCK_EX | LOCK_NB) == 0) return;
   if (errno == EWOULDBLOCK)
     throw OutputError(folder.string() + ": is in use by another run; wait for its end, or choose another folder");
-  // A file system without locks: two runs into one folder are the user's care there.
+  // The file system has no locks: the user must avoid two runs into one folder.
 }
 
 void FolderLock::check() const {

@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// Keeps a folder for one writer: a second lock, of this process or another, fails while the first one lives, however
-/// that one's process ends. Throws OutputError.
+/// Keeps a folder for one writer. A second lock, of this process or another, fails while the first one lives. The lock
+/// ends with its process, however that ends. Throws OutputError.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);

@@ -15,7 +15,8 @@ nlohmann::ordered_json parsedOrderedJson(std::string_view text);
 /// `is_discarded()` where the text is no JSON.
 nlohmann::json jsonOrDiscarded(std::string_view text);
 
-/// On one line, or with `indent` spaces per level. Bytes that are no UTF-8, as names of files may have, are replaced.
+/// Writes JSON on one line, or with `indent` spaces per level. Bytes that are not UTF-8, as in file names, are
+/// replaced.
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace motorcade

@@ -28,14 +28,13 @@ class LineFile {
   std::string buffer_;
 };
 
-/// Gives a file another name, also one that another file has. Throws OutputError.
+/// Renames a file, replacing one that has the new name. Throws OutputError.
 void replace(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Of a file's name while `writeAtOnce` writes it, added at its end.
+/// Suffix of a file's name while `writeAtOnce` writes it.
 inline constexpr const char* kUnfinishedSuffix = ".part";
 
-/// Writes a whole file under another name and renames it: readers see all of it or nothing. A text's last line gets its
-/// end.
+/// Writes a whole file under another name and renames it: readers see all of it or nothing. Ends a text's last line.
 void writeAtOnce(const std::filesystem::path& file, std::string_view text);
 void writeBytesAtOnce(const std::filesystem::path& file, std::string_view bytes);
 

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 bool beginsWithDigit(std::string_view text) { return !text.empty() && text.front() >= '0' && text.front() <= '9'; }
 
-/// Takes the digits at the beginning of a text, and gives them without zeros ahead.
+/// Takes the digits at the beginning of a text, and returns them without leading zeros.
 std::string_view takeNumber(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789"), text.size());
   std::string_view number = text.substr(0, end);

@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// The order in which people count: `img2` before `img10`. Names that differ in zeros ahead of a number alone are
-/// ordered as plain text.
+/// The order in which people count: `img2` before `img10`. Names that differ only in leading zeros are ordered as plain
+/// text.
 bool naturallyBefore(std::string_view a, std::string_view b);
 
 struct NaturalOrder {
@@ -16,7 +16,7 @@ struct NaturalOrder {
   }
 };
 
-/// All that lies in a folder, in natural order. Throws std::filesystem::filesystem_error.
+/// All entries of a folder, in natural order. Throws std::filesystem::filesystem_error.
 std::vector<std::filesystem::path> listFolder(const std::filesystem::path& folder);
 /// The same, empty where there is no such folder.
 std::vector<std::filesystem::path> listFolderIfThere(const std::filesystem::path& folder);

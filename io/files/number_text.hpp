@@ -24,7 +24,7 @@ inline void appendScientific(std::string& text, double value, int decimals) {
   text.append(buffer, end);
 }
 
-/// The finite number that the whole text is; empty where it is none.
+/// The finite number that the whole text spells; empty for any other text.
 inline std::optional<double> numberIn(std::string_view text) {
   double value = 0;
   const char* const end = text.data() + text.size();

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// A file that grows with every write at once: nothing waits in a buffer of ours when the program is killed. Every
+/// An unbuffered file: each write reaches the system at once, so that nothing is lost when the program is killed. Every
 /// failure is an OutputError naming the file.
 class OutputFile {
  public:

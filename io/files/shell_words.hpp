@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// A word as a shell takes it back when a message is pasted: between quotes where it has more than plain letters.
+/// A word that a shell reads back when a message is pasted, quoted where it has more than plain letters.
 inline std::string shellWord(const std::string& text) {
   constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789/._-+,:=@%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;

@@ -21,7 +21,7 @@ struct TextLine {
 
 inline constexpr std::size_t kMaxText_bytes = std::size_t{1} << 30;
 
-/// What to do with a last line that has no line end: a program that was killed may have left half a line.
+/// The treatment of a last line that has no line end. A program that was killed may have left half a line.
 enum class LastLine { kKeep, kDropIfCut };
 
 /// The lines of a file that are not blank. Accepts both line ends and a byte order mark. Throws InputError when the
@@ -29,35 +29,35 @@ enum class LastLine { kKeep, kDropIfCut };
 std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep,
                                 std::size_t limit_bytes = kMaxText_bytes);
 
-/// The lines of a table of a run after its header, whose beginning is checked. Of a file that a killed run left, the
-/// cut line or, where it is empty, the header may be missing. Throws InputError.
+/// Reads the lines of a run's table after its header, whose beginning is checked. A killed run may have left a cut
+/// line, which is dropped, or no header in an empty file. Throws InputError.
 std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start);
 
 /// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.
 std::string readWhole(const std::filesystem::path& file, std::size_t limit_bytes = kMaxText_bytes);
 
-/// The beginning of a text from a file, as a message may show it: no byte that a terminal could take for a command, and
-/// no more than fits into a line.
+/// The beginning of a text from a file, safe for a message: no byte is a command to a terminal, and it fits into a
+/// line.
 std::string printable(std::string_view text, std::size_t most_characters = 40);
 
-/// Without the blanks around it.
+/// The text without the blanks around it.
 std::string trimmed(std::string_view text);
 
 /// Larger numbers are refused, so that squares of products stay finite.
 inline constexpr double kLargestNumber = 1e50;
 
-/// But for the digits that a file leaves off.
+/// True for a rotation matrix, up to the digits that a file leaves off.
 bool isRotation(const Eigen::Matrix3d& matrix);
 
 /// Takes the fields of one line from left to right. Every failure is an InputError that names file and line.
 class FieldReader {
  public:
-  /// A space separates by any run of blanks, any other character singly.
+  /// Creates a reader. A space separates by any run of blanks, any other character singly.
   FieldReader(const std::filesystem::path& file, const TextLine& line, char separator = ' ');
 
   std::string_view word(std::string_view what);
   double number(std::string_view what);
-  /// The same of a field that may be empty.
+  /// The number in a field that may be empty.
   std::optional<double> numberOrNone(std::string_view what);
   std::int64_t integer(std::string_view what);
   /// The one of `values` that has this name.
@@ -68,7 +68,8 @@ class FieldReader {
     if (found == values.end()) fail(std::string(1, '\'').append(printable(text)).append("' is no ").append(what));
     return *found;
   }
-  /// Twelve numbers, row by row: R | t. The rotation must be one, and is put back onto SO(3) from its printed digits.
+  /// A pose of twelve numbers, row by row: R | t. R must be a rotation, and is put back onto SO(3) from its printed
+  /// digits.
   SE3 pose(std::string_view what);
   bool atEnd() const { return rest_.empty() && !owes_field_; }
   /// Fails when fields are left.

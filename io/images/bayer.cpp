@@ -49,7 +49,7 @@ std::uint8_t grayAt(const Rows& rows, int left, int x, int right, const Weights&
   return static_cast<std::uint8_t>((sum + 512) >> 10);
 }
 
-/// Beyond an edge the image goes on mirrored at the edge's pixel, which keeps the filters' order.
+/// Fills one row. The image is mirrored at the pixels of its edges, which keeps the filters' order.
 void fillRow(const Rows& rows, const RowWeights& weights, int width, std::uint8_t* gray) {
   const int last = width - 1;
   gray[0] = grayAt(rows, 1, 0, 1, weights[0]);
@@ -99,8 +99,8 @@ Image grayOfMosaic(const Image& mosaic, BayerPattern pattern, ImagePool& pool) {
   return gray;
 }
 
-/// Both greens of a mosaic see the same; red and blue, on the other diagonal, differ from them or from each other. What
-/// is no mosaic has means that agree to a tenth of a level, or differ by whole rows or columns.
+/// Both greens of a mosaic see the same. Red and blue, on the other diagonal, differ from them or from each other. In
+/// other images the means agree to a tenth of a level, or differ by whole rows or columns.
 std::optional<std::string> suspectedMosaic(const Image& image) {
   constexpr double kLeast = 2, kMostOfGreens = 0.15;  // levels; share of that
   const auto means = meansOf(image);

@@ -16,8 +16,8 @@ std::string_view nameOf(BayerPattern pattern);
 /// Empty for no such name; case does not matter, and ROS' `bayer_rggb8` is understood.
 std::optional<BayerPattern> bayerPatternOf(std::string_view name);
 
-/// The gray of a mosaic, at its full size: the luma, as `grayOf` weighs it, of colors of which each is the mean of its
-/// nearest pixels. See the source for the formula.
+/// The gray of a mosaic at its full size: the luma, weighed as by `grayOf`. Each color is the mean of its nearest
+/// pixels. See the source for the formula.
 Image grayOfMosaic(const Image& mosaic, BayerPattern pattern, ImagePool& pool);
 
 /// Names the Bayer patterns with the same two green pixels if a gray image is in fact a mosaic. Empty for other images

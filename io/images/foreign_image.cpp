@@ -90,7 +90,7 @@ std::string mendOf(Mend mend, const fs::path& file) {
 
 }  // namespace
 
-/// Files whose names say image are replaced: beside new ones they would be images of their own.
+/// Converts files whose names say image in place: beside new ones they would be images of their own.
 std::string conversionOf(const fs::path& file) {
   const bool replaced = hasImageName(file);
   const std::string format = replaced ? file.extension().string().substr(1) : "png";

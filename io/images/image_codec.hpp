@@ -10,7 +10,7 @@
 #include "core/image.hpp"
 #include "io/images/image_file.hpp"
 
-/// What `image_file` asks of each format, and what the formats share.
+/// The interface of `image_file` to each format, and functions that the formats share.
 namespace motorcade {
 
 /// Reads one format from the bytes of a whole file; `file` is for messages. Throws InputError on a damaged image.
@@ -21,20 +21,20 @@ struct ImageCodec {
   ImageHeader (*header)(std::string_view bytes, const std::filesystem::path& file);
   /// Decodes to 8-bit gray; `readImage` describes the treatment of samples with more bits.
   Image (*decode)(std::string_view bytes, const std::filesystem::path& file, ImagePool& pool, int sample_bits);
-  /// The brightest sample of a file whose header tells of 16 bits.
+  /// The brightest sample of a file whose header declares 16 bits.
   int (*brightest)(std::string_view bytes, const std::filesystem::path& file);
 };
 const ImageCodec& pngCodec();
 const ImageCodec& jpegCodec();
 const ImageCodec& pgmCodec();
 
-/// The size that a header tells, if it is one that an image may have.
+/// The size in a header, if an image may have it.
 ImageSize checkedSize(std::uint64_t width, std::uint64_t height, const std::filesystem::path& file);
 [[noreturn]] void failDamaged(const std::filesystem::path& file, const std::string& why);
 /// Names a kind of image that is not read, "a CMYK JPEG", and a command that converts all of the file's folder.
 [[noreturn]] void failUnsupported(const std::filesystem::path& file, const std::string& kind);
 
-/// Where each row begins, for libraries that want to be told.
+/// Pointers to the beginning of each row, for libraries that take them.
 std::vector<std::uint8_t*> rowPointers(std::uint8_t* first, int height, std::size_t stride);
 
 }  // namespace motorcade

@@ -49,18 +49,18 @@ struct Gray16Image {
 
 /// True when the file's name says image (png, jpg, jpeg, pgm, ppm, pnm).
 bool hasImageName(const std::filesystem::path& file);
-/// Recognized by the first bytes; unknown also when the file cannot be read.
+/// The format by the first bytes; unknown also when the file cannot be read.
 ImageFormat imageFormat(const std::filesystem::path& file);
 /// Parses the header alone. Refuses sizes below 16 or above 16384 in either direction, more than 2^26 pixels, and
 /// unsupported kinds of images.
 ImageHeader readImageHeader(const std::filesystem::path& file);
 ImageSize readImageSize(const std::filesystem::path& file);
-/// The brightest sample of a file whose header tells of 16 bits; 0 of others.
+/// The brightest sample of a file whose header declares 16 bits; 0 of others.
 int readBrightestSample(const std::filesystem::path& file);
 
 /// Any PNG, JPEG, PGM or PPM as 8-bit gray; color is weighted as in BT.601. Samples of 16 bits lose the lower byte or
-/// are scaled as the file says. Another size than the expected one is refused by the header, a file of more than
-/// `max_mb` before it is read.
+/// are scaled as the file says. An unexpected size is refused by the header, a file of more than `max_mb` before it is
+/// read.
 Image readImage(const std::filesystem::path& file, ImagePool& pool, std::optional<ImageSize> expected = {},
                 int max_mb = kMaxImageFile_mb);
 
@@ -85,12 +85,12 @@ std::string readImageBytes(const std::filesystem::path& file, int max_mb = kMaxI
 /// A gray PNG of 16 bits; one of 8 bits is widened without scaling.
 Gray16Image readPng16(const std::filesystem::path& file);
 
-/// As a PNG file's bytes.
+/// Encodes an image as the bytes of a PNG file.
 std::string encodePng(const RgbImage& image);
 /// kFast trades a larger file for time.
 enum class PngEffort { kFast, kSmall };
 void writePng(const std::filesystem::path& file, const Image& image, PngEffort effort = PngEffort::kFast);
-/// As a JPEG file's bytes; `quality` is 1 to 100.
+/// Encodes an image as the bytes of a JPEG file; `quality` is 1 to 100.
 std::string encodeJpeg(const Image& image, int quality);
 std::string encodeJpeg(const RgbImage& image, int quality);
 void writePng16(const std::filesystem::path& file, const Gray16Image& image, PngEffort effort = PngEffort::kFast);

@@ -5,8 +5,8 @@
 #include "core/ids.hpp"
 #include "io/images/image_file.hpp"
 
-/// Images of instances: one number for the pixels of one body, 0 for the background. Of true masks it is the number of
-/// the label plus one.
+/// Images of instances: one number for the pixels of one body, 0 for the background. In true masks the number is that
+/// of the label plus one.
 namespace motorcade {
 
 /// The file of a frame's instances in their folder: NNNNNN.png of rendered drives, instancegt_NNNNN.png of Virtual

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 bool isJpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"); }
 
-/// A progressive file refines the whole image in each scan. Encoders make ten or so; a file of a few kB that tells of
-/// thousands would take hours.
+/// Most scans of a progressive file, each of which refines the whole image. Encoders make ten or so; a file of a few kB
+/// that claims thousands would take hours.
 constexpr int kMostScans = 100;
 /// Coefficients of a progressive file of 2^26 pixels in three colors.
 constexpr long kMostCoefficients_bytes = 400'000'000;
@@ -31,7 +31,7 @@ struct JpegErrors {
     std::longjmp(errors.jump, 1);
   }
   static void ignore(j_common_ptr) {}
-  /// Libjpeg would fill a cut file up with gray.
+  /// Fails on a warning: libjpeg would fill a cut file up with gray.
   static void failOnWarning(j_common_ptr jpeg, int level) {
     if (level < 0) fail(jpeg);
   }
@@ -77,7 +77,7 @@ struct JpegReader {
     jpeg_finish_decompress(&jpeg);
     return true;
   }
-  /// Why the header's kind of JPEG is not decoded; null where libjpeg says something else is wrong.
+  /// Names the kind of JPEG that libjpeg does not decode; null for other errors.
   const char* unsupportedKind() const {
     switch (errors.manager.msg_code) {
       case JERR_BAD_PRECISION:
@@ -92,7 +92,7 @@ struct JpegReader {
         return nullptr;
     }
   }
-  /// Libjpeg may have warned of what is wrong with the header.
+  /// True after a warning. Libjpeg may have warned of a fault in the header.
   bool damaged() const { return errors.manager.num_warnings > 0; }
 };
 

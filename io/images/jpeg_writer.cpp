@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// What libjpeg has to know of an image, whose rows `rowAt` gives.
+/// Image properties that libjpeg needs; the pixels come from `row_at`.
 struct Rows {
   int width = 0, height = 0, components = 1;
   J_COLOR_SPACE colors = JCS_GRAYSCALE;

@@ -9,11 +9,11 @@
 
 namespace motorcade {
 
-/// Of a run folder.
+/// The folder of masks within a run folder.
 inline constexpr const char* kMasksFolder = "masks";
 
-/// What `run --masks` writes of one frame: 0 where nothing moves or nothing is known, else the number of the track plus
-/// one, of the nearest object where several overlap.
+/// The image that `run --masks` writes for one frame. A pixel is 0 where nothing moves or nothing is known, else the
+/// number of the track plus one. Where several objects overlap, the nearest is shown.
 Gray16Image maskImage(const FrameEstimate& frame, const std::vector<ObjectMask>& masks, int width_px, int height_px);
 
 /// The value of a track's pixels there.

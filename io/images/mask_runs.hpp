@@ -12,7 +12,7 @@ struct MaskRun {
   int u_begin, u_end, v_begin, v_end;
 };
 
-/// Visits what a mask shows of an image of the given size.
+/// Visits the runs of a mask within an image of the given size.
 template <class Visit>
 void forEachRun(const ObjectMask& mask, int width_px, int height_px, const Visit& visit) {
   const auto uAt = [&](int column) { return std::clamp(mask.left_px + column * mask.cell_px, 0, width_px); };

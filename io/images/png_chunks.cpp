@@ -9,7 +9,7 @@ namespace motorcade {
 namespace {
 
 constexpr std::size_t kLengthAndName_bytes = 8, kAroundData_bytes = 12;
-/// Of a chunk that is no part of the image. Those that libpng finds too large are left to it.
+/// Largest ancillary chunk that is skipped here. Larger ones are left to libpng, which may refuse them.
 constexpr std::size_t kMostToSkip_bytes = 1'000'000;
 
 /// Zero for a palette, and where there is none such.
@@ -40,8 +40,8 @@ CommonPng commonPngOf(const PngChunk& header) {
   return {.pixel_bytes = deep_gray ? 2 * channels : 0, .deep = deep_gray};
 }
 
-/// Whether a chunk can be left out as libpng leaves it out. A name that begins with a small letter says so, but a
-/// transparent color is part of the image.
+/// True for a chunk that libpng leaves out, too. The name of such a chunk begins with a small letter, but tRNS, a
+/// transparent color, is part of the image.
 bool canBeSkipped(const PngChunk& chunk) {
   const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto large = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -49,7 +49,7 @@ bool canBeSkipped(const PngChunk& chunk) {
          large(chunk.name[2]) && chunk.name != "tRNS" && chunk.data.size() <= kMostToSkip_bytes;
 }
 
-/// Adds an IDAT that `at` begins with, if it follows upon the last one.
+/// Adds the IDAT chunk at the beginning of `at`, if it directly follows the previous one.
 bool addImageChunk(CommonPng& png, std::string_view at, std::size_t data_bytes) {
   if (png.image_chunks.empty()) png.image_chunks = at.substr(0, 0);
   if (png.image_chunks.data() + png.image_chunks.size() != at.data()) return false;

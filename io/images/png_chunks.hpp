@@ -9,7 +9,7 @@ namespace motorcade {
 
 inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
-/// The number in four bytes, of which the first weighs most.
+/// A number of four bytes, the most significant first.
 constexpr std::uint32_t bigEndian32(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
@@ -36,7 +36,7 @@ struct CommonPng {
 /// that begins with the signature.
 std::optional<CommonPng> findCommonPng(std::string_view bytes);
 
-/// Puts together what the IDATs hold; `to` has room for it.
+/// Joins the contents of the IDATs; `to` has room for it.
 void joinImageChunks(const CommonPng& png, std::uint8_t* to);
 
 }  // namespace motorcade

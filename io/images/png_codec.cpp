@@ -48,7 +48,7 @@ ImageHeader pngHeader(std::string_view bytes, const fs::path& file) {
   return header;
 }
 
-/// The size of an image whose pixels may be in the file: deflate packs at most 1032 bytes into one.
+/// The size of an image, if the file is long enough for its pixels: deflate packs at most 1032 bytes into one.
 ImageSize decodableSize(std::string_view bytes, const fs::path& file) {
   constexpr std::uint64_t kMostPerByte = 1032, kBitsPerByte = 8;
   const ImageSize size = pngHeader(bytes, file).size;

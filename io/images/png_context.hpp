@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// What libpng's callbacks need, to read (`bytes`, what is left of the file) and to keep the message of an error.
-/// libpng reports errors by jumping: no function between `setjmp` and the jump owns anything.
+/// State of libpng's callbacks: the rest of the file to read (`bytes`) and the message of an error. libpng reports
+/// errors by jumping: no function between `setjmp` and the jump owns anything.
 struct PngContext {
   std::string_view bytes;
   std::array<char, 128> message{};

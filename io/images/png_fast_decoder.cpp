@@ -12,10 +12,10 @@
 namespace motorcade {
 namespace {
 
-/// What is larger is rare, and its work space would stay in the pool.
+/// Largest image that is unpacked here. Larger ones are rare, and their work space would stay in the pool.
 constexpr std::size_t kMostUnpacked_bytes = std::size_t{1} << 26;
 
-/// Where the pixels lie while they are unpacked. The parts' sizes hang on the image's size alone, so that the pool
+/// Memory in which the pixels are unpacked. The sizes of its parts depend only on the image's size, so that the pool
 /// holds the same memory for each image of a drive.
 class WorkSpace {
  public:
@@ -45,14 +45,15 @@ class WorkSpace {
   Image memory_;
 };
 
-/// Whether distances within the stream stay within the window that it claims: zlib refuses others, libdeflate does not.
+/// True when the window that the stream claims is large enough for any distance within it. zlib refuses larger
+/// distances, libdeflate does not.
 bool windowSuffices(std::uint8_t first_byte, std::size_t unpacked_bytes) {
   constexpr std::size_t kLargest_bytes = 32768;
   const std::size_t window_bytes = std::size_t{256} << (first_byte >> 4);
   return window_bytes >= std::min(kLargest_bytes, unpacked_bytes);
 }
 
-/// Unpacks the whole stream, or nothing: it must hold just what the image needs, and nothing may follow.
+/// Unpacks the whole stream. Fails unless it holds exactly the bytes of the image and nothing follows.
 bool unpack(const CommonPng& png, WorkSpace& space) {
   joinImageChunks(png, space.packed());
   if (png.packed_bytes == 0 || !windowSuffices(*space.packed(), space.unpackedBytes())) return false;
@@ -79,7 +80,7 @@ void scaleToGray(const std::uint8_t* row, int pixel_bytes, int width, int sample
     gray[x] = upperBits(static_cast<unsigned>(row[0]) << 8 | row[1], sample_bits);
 }
 
-/// Takes the filters off and fills the image; gray rows need no place between. False when a row names no filter.
+/// Undoes the filters and fills the image. Gray rows need no buffer between. False when a row names an unknown filter.
 bool removeFilters(WorkSpace& space, const CommonPng& png, int sample_bits, Image& image) {
   std::memset(space.zeros(), 0, space.rowBytes());
   const std::uint8_t* above = space.zeros();

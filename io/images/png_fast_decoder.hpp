@@ -10,12 +10,12 @@
 /// Two ways from the bytes of a PNG to its pixels in gray. Where both give an image, it is the same.
 namespace motorcade {
 
-/// Decodes what cameras write: 8-bit gray or color or 16-bit gray, not interlaced, without a palette or a transparent
-/// color; in less than half of libpng's time. `size` is the header's. Empty for other files and for damaged ones:
-/// libpng is to decode them or to say what is wrong. See `usedSampleBits` for those of 16-bit samples.
+/// Decodes what cameras write in less than half of libpng's time: 8-bit gray or color or 16-bit gray, not interlaced,
+/// without a palette or a transparent color. `size` is the header's. Empty for other files and for damaged ones: libpng
+/// decodes them or says what is wrong. See `usedSampleBits` for 16-bit samples.
 ///
-/// A file that was damaged by chance is empty here: each part has a checksum. One that was made to, with right
-/// checksums around a stream that has codes which zlib refuses, may give an image.
+/// A file that was damaged by chance gives an empty result, as each part has a checksum. A file that was damaged on
+/// purpose may give an image: it has right checksums, but codes that zlib refuses.
 std::optional<Image> decodeCommonPng(std::string_view bytes, ImageSize size, ImagePool& pool,
                                      int sample_bits = kAllSampleBits);
 

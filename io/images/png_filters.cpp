@@ -12,8 +12,8 @@ namespace {
 /// The filters of the PNG specification (2nd edition, section 9.2), with its numbers.
 enum Filter { kNone, kSub, kUp, kAverage, kPaeth };
 
-/// That one of three neighbors which is closest to left + above - corner (section 9.4), found without branches, which
-/// noise would have mispredicted.
+/// Returns the one of three neighbors that is closest to left + above - corner (section 9.4). It has no branches, as
+/// noise would make them unpredictable.
 int paeth(int left, int above, int corner) {
   const int right = left - corner, down = above - corner;
   const int from_left = std::abs(down), from_above = std::abs(right), from_corner = std::abs(right + down);
@@ -21,7 +21,8 @@ int paeth(int left, int above, int corner) {
   return std::min(from_left, from_above) <= from_corner ? side : corner;
 }
 
-/// Adds what `predict(left, above, corner)` gives. Rows come by value: what is written cannot be their pointers.
+/// Adds the result of `predict(left, above, corner)`. The row comes by value, so that the compiler knows that writing
+/// does not change its pointers.
 template <int kChannels, class Predict>
 void addPrediction(FilteredRow row, std::uint8_t* to, const Predict& predict) {
   std::array<std::uint8_t, kChannels> left{}, corner{};

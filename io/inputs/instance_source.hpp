@@ -10,18 +10,18 @@
 
 namespace motorcade {
 
-/// Throws InputError naming the folder where it holds no instance labels, or its first file, by name, where that cannot
-/// be read or has another size.
+/// Throws InputError where the folder holds no instance labels, or where the first file, by name, cannot be read or has
+/// another size. The message names the folder or the file.
 void requireInstances(const std::filesystem::path& folder, int width_px, int height_px);
 
-/// The pairs of another source, each with the instance labels that a folder holds for its frame, as somebody else's
+/// The pairs of another source, each with the instance labels of its frame from a folder. Another program's
 /// segmentation wrote them: NNNNNN.png, gray of 8 or 16 bits or with a palette. Frames without a file have none.
 class InstanceSource final : public PairSource {
  public:
   /// Labels have the size of the rectified images.
   InstanceSource(std::unique_ptr<PairSource> pairs, std::filesystem::path folder, int width_px, int height_px);
 
-  /// Labels that cannot be read are left out, and told at the end.
+  /// Labels that cannot be read are left out, and reported at the end.
   std::optional<StereoFrame> next() override;
   void stop() override { pairs_->stop(); }
   SourceEnd finish() override;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFarthestMounting_m = 50, kMostTurn_deg = 360;  // beyond, it is in other units
 
-/// Meters and degrees, or empty where they are not such.
+/// Three lengths in meters and three angles in degrees, or empty where the text has others.
 std::optional<std::array<double, 6>> sixNumbersOf(const std::string& text) {
   std::array<double, 6> numbers{};
   std::istringstream stream(text + ",");

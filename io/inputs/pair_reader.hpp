@@ -10,19 +10,19 @@
 namespace motorcade {
 
 /// Reads the images of a sequence as the pipeline takes them: gray of 8 bits, and rectified where the files are not.
-/// Whoever shows or measures in an image of a sequence reads it by this. The maps are built with it, some milliseconds
-/// each.
+/// Commands that show images or measure in them use it, too. The constructor builds the maps, which takes some
+/// milliseconds each.
 class PairReader {
  public:
   explicit PairReader(const Sequence& sequence, int max_file_mb = kMaxImageFile_mb);
 
   /// Throws InputError naming the file.
   Image read(const FramePaths& frame, StereoSide side);
-  /// From the bytes of a file; `name` is for messages.
+  /// Decodes the bytes of a file; `name` is for messages.
   Image decode(std::string_view bytes, const std::filesystem::path& name, StereoSide side);
-  /// An image that came without a file, of the sequence's size.
+  /// Prepares an image that came without a file and has the sequence's size.
   Image prepared(Image raw, StereoSide side);
-  /// The larger share of either image's pixels for which the camera saw nothing; 0 where nothing is to be rectified.
+  /// Share of the pixels that the camera did not see, of the image with more of them; 0 where nothing is rectified.
   double shareOutside() const;
 
  private:

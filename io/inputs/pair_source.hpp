@@ -8,15 +8,15 @@
 
 namespace motorcade {
 
-/// The end of a source, as far as it is worth a word to the user.
+/// The end of a source, with remarks for the user.
 struct SourceEnd {
   std::string remark{};     // a sentence; empty where all pairs came
   bool damaged = false;     // what follows the last pair cannot be used, or there was none
   std::string instances{};  // what is wrong with the instance labels, a sentence; empty where nothing is
 };
 
-/// Stereo pairs as a run takes them: decoded, rectified and numbered, from a recorded drive, a pipe, or whatever else
-/// brings some. One thread takes the pairs.
+/// Stereo pairs as a run takes them: decoded, rectified and numbered, from a recorded drive, a pipe, or another source.
+/// One thread takes the pairs.
 class PairSource {
  public:
   virtual ~PairSource() = default;
@@ -33,7 +33,7 @@ class PairSource {
   virtual FrameId first() const = 0;
   /// The time of any pair up to the last that came, also of one that was left out.
   virtual Timestamp stampOf(FrameId frame) const = 0;
-  /// The larger share of either image's pixels for which the camera saw nothing; 0 where nothing is rectified.
+  /// Share of the pixels that the camera did not see, of the image with more of them; 0 where nothing is rectified.
   virtual double shareOutside() const = 0;
   /// Most pairs ever waiting, and how many may. Final once `finish` has returned.
   virtual std::size_t highWater() const = 0;

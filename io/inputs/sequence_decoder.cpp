@@ -9,9 +9,9 @@
 namespace motorcade {
 namespace {
 
-/// Decoding ahead gives way to the frame that is due, but not so far that other programs starve it: at the lowest
-/// priority, 19, it gets hundredths of a busy processor, and the drive falls seconds behind. On Linux the priority is
-/// the calling thread's alone; without it all works as well, only later.
+/// Lowers the priority, so that decoding ahead gives way to the frame that is due, but is not starved by other
+/// programs. At the lowest priority, 19, it gets hundredths of a busy processor, and the drive falls seconds behind. On
+/// Linux the priority is the calling thread's alone. Without it all works as well, only later.
 void giveWay() {
   constexpr int kLessUrgent = 5;
   setpriority(PRIO_PROCESS, 0, kLessUrgent);
@@ -56,7 +56,7 @@ SourceEnd SequenceDecoder::finish() {
   return {};
 }
 
-/// Where both images cannot be read, throws what is wrong with the left one.
+/// Reads both images. If neither can be read, throws the error of the left one.
 void SequenceDecoder::readInto(StereoFrame& frame, const FramePaths& paths) {
   right_.begin(paths);
   const std::exception_ptr left = problemOf([&] { frame.left = reader_.read(paths, StereoSide::kLeft); });
@@ -70,7 +70,8 @@ std::optional<StereoFrame> SequenceDecoder::next() {
   return frame;
 }
 
-/// A pair that was just taken is being worked on: while there are pairs enough, the next one is decoded afterwards.
+/// Waits while a pair that was just taken is worked on. As long as there are pairs enough, the next one is decoded
+/// afterwards.
 void SequenceDecoder::letThePairGoAhead() const {
   constexpr std::chrono::milliseconds kWork(25), kPause(2);
   const auto enough = [this] { return 2 * ring_.size() >= ring_.capacity(); };

@@ -18,7 +18,7 @@
 namespace motorcade {
 
 /// Decodes and rectifies a sequence's images on threads of its own, one per side, a bounded number of pairs ahead of
-/// whoever takes them. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out
+/// the consumer. Takes frames from one thread only. A pair that cannot be read, or has the wrong size, comes out
 /// without images and with its `problem`.
 class SequenceDecoder final : public PairSource {
  public:

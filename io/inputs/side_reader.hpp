@@ -13,13 +13,14 @@ namespace motorcade {
 /// Reads the images of one side on a thread of its own, while its owner reads those of the other.
 class SideReader {
  public:
-  /// `reader` and the frames must outlive what is begun. `prepare` is called once, on the thread.
+  /// `reader` and the frames must outlive any reading that was begun. `prepare` is called once, on the thread.
   SideReader(PairReader& reader, StereoSide side, void (*prepare)());
   ~SideReader();
   SideReader(const SideReader&) = delete;
   SideReader& operator=(const SideReader&) = delete;
 
-  /// Each `begin` is followed by one `finish`, which waits for the image and throws what reading it threw.
+  /// Begins to read an image. Each `begin` is followed by one `finish`, which waits for the image and rethrows the
+  /// error of reading it.
   void begin(const FramePaths& frame);
   Image finish();
 

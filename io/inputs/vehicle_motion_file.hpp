@@ -8,14 +8,13 @@
 
 namespace motorcade {
 
-/// The name of a drive's file of the vehicle's own motion, which is read without being asked for.
+/// The name of a drive's file of the vehicle's own motion. It is read without an option.
 inline constexpr const char* kVehicleMotionFile = "motion.csv";
 
 /// Samples of the vehicle's own motion on the clock of a drive's images, ordered by time. `file` is a table whose
 /// header begins with `time_s,speed_mps,yaw_rate_radps`, with optional columns `speed_sigma_mps` and
-/// `yaw_rate_sigma_radps`, or KITTI's packets (`oxts.txt`, or a folder of them), of which the speed ahead and the rate
-/// about the upward axis are taken. Throws InputError naming file and line, also where no sample is of the images'
-/// time.
+/// `yaw_rate_sigma_radps`. It may also be KITTI's packets (`oxts.txt` or a folder of them): their speed ahead and rate
+/// about the upward axis are taken. Throws InputError naming file and line, also when no sample is of the images' time.
 std::vector<VehicleMotionSample> readVehicleMotion(const std::filesystem::path& file, const Sequence& sequence);
 
 /// Writes such a table, without deviations. Throws OutputError.

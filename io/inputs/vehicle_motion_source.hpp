@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// The pairs of another source, each with the vehicle's own motion up to its time, as the sensors of a vehicle that
-/// drives would have told it.
+/// The pairs of another source, each with the samples of the vehicle's own motion up to its time, as sensors would have
+/// sent them during the drive.
 class VehicleMotionSource final : public PairSource {
  public:
   /// `samples` are ordered by time.

@@ -11,7 +11,7 @@
 #include "io/files/text_file.hpp"
 #include "io/layouts/layout_parts.hpp"
 
-/// Argoverse 1: a log of its stereo set, or of its tracking set where the rectified images lie in it.
+/// Argoverse 1: a log of its stereo set, or one of its tracking set that holds the rectified images.
 namespace motorcade {
 namespace {
 
@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr const char *kLeft = "stereo_front_left_rect", *kRight = "stereo_front_right_rect";
 
-/// A camera and where it stands on the vehicle.
+/// A camera and its pose on the vehicle.
 struct PlacedCamera {
   StereoCamera camera;
   SE3 T_vehicle_cam;

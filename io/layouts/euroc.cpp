@@ -34,7 +34,8 @@ ImagesByNumber imagesOf(const fs::path& camera) {
   return images;
 }
 
-/// Poses of the left camera beside the recording, or of the body within it; both in the frame of what measured them.
+/// Adds the poses of the left camera beside the recording, or of the body within it. Both are in the frame of the
+/// instrument that measured them.
 void addTruth(Sequence& sequence, const fs::path& mav, const fs::path& left_sensor) {
   SE3 T_left_rectified;
   if (sequence.rectification)

@@ -6,7 +6,7 @@
 #include "io/images/image_file.hpp"
 #include "io/sequence/sequence.hpp"
 
-/// What --camera and --calibration say.
+/// The values of --camera and --calibration.
 namespace motorcade {
 
 /// The same with absolute paths, so that it can be used from elsewhere.

@@ -56,8 +56,8 @@ void tellMissingFiles(Sequence& sequence) {
   sequence.notes.push_back({"pairs", text + ", the other frames have no images and a predicted pose"});
 }
 
-/// Tells of lines that bring together numbers which other lines do not, as a list does that was made of two folders in
-/// order while an image was missing.
+/// Notes lines that pair different numbers while other lines do not. Such a list was made of two folders in order while
+/// an image was missing.
 void tellUnlikePairs(Sequence& sequence) {
   std::map<std::int64_t, std::int64_t> counts;  // of the differences of a line's numbers
   std::vector<std::pair<FramePaths, std::int64_t>> differences;
@@ -96,7 +96,7 @@ List readList(const fs::path& file) {
   return list;
 }
 
-/// The camera from what lies beside the list.
+/// The camera from the files beside the list.
 StereoCamera cameraBeside(Sequence& sequence, const fs::path& folder, ImageSize size) {
   if (const auto camera = cameraIn(sequence, folder, {.any_pair = true}, size)) return *camera;
   throw InputError(sequence.folder.string() +

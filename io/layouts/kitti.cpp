@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is common to these layouts once the folders are known; `calibration` reads the layout's own.
+/// Sets the camera and the stamps of a sequence whose folders are known; `calibration` reads the layout's own.
 template <class Calibrate>
 void finish(Sequence& sequence, const SequenceSource& source, const fs::path& times_file, Calibrate&& calibration) {
   setCamera(sequence, source.given,

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Moves the right image, so that its middle comes to lie where the left one's is.
+/// Moves the right image, so that its middle lies in the column of the left one's.
 Rectification movedRight(const StereoCamera& camera, double right_cx_px) {
   LensCamera left{.fx_px = camera.fx_px, .fy_px = camera.fy_px, .cx_px = camera.cx_px, .cy_px = camera.cy_px};
   LensCamera right = left;

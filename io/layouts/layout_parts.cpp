@@ -49,7 +49,7 @@ ImageSize imageSize(const Sequence& sequence) {
   return *left;
 }
 
-/// The times of frames are those of their places.
+/// Sets the times of frames by their places in the numbering.
 void setStampsByRate(Sequence& sequence, double fps_hz) {
   if (!(fps_hz > 0) || !std::isfinite(fps_hz)) throw UsageError("--fps must be a positive number");
   for (std::size_t i = 0; i < sequence.frames.size(); ++i)

@@ -13,7 +13,7 @@
 #include "io/sequence/image_names.hpp"
 #include "io/sequence/timestamps.hpp"
 
-/// What the layouts have in common.
+/// Functions that the layouts share.
 namespace motorcade {
 
 struct Rig;
@@ -37,24 +37,24 @@ std::filesystem::path neededFile(const std::filesystem::path& file, const std::s
 std::vector<std::filesystem::path> listImages(const std::filesystem::path& folder);
 /// The same; throws InputError where there is none.
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder);
-/// Of a folder, those that have a number. Throws InputError where there is no image.
+/// Those images of a folder whose names have a number. Throws InputError where there is no image.
 ImagesByNumber imagesByNumber(const std::filesystem::path& folder);
 
 /// The frames of two folders: by numbers or times in the names, or else in order.
 void setFrames(Sequence& sequence, const std::filesystem::path& left_folder, const std::filesystem::path& right_folder);
-/// The frames of images whose times are known, which become stamps, or whose numbers are (`kNames`); without single
-/// images before the first pair or after the last. Gives the frames' numbers.
+/// Sets the frames from images whose times are known, which become stamps, or whose numbers are (`kNames`). Leaves out
+/// single images before the first pair or after the last. Returns the frames' numbers.
 std::vector<std::int64_t> setKeyedFrames(Sequence& sequence, const KeyedImages& images);
 
 /// Sets the times from a file; where that is empty, leaves those that the names told, or takes the rate.
 void setStamps(Sequence& sequence, const std::filesystem::path& times_file, double fps_hz);
 /// Adds a note where the numbers in a file of times are no seconds.
 void tellUnit(Sequence& sequence, const Times& times, const std::filesystem::path& file);
-/// Sets the camera, with the size that the images agree on: what the user gives comes before what the layout has, which
-/// is only asked for when it is needed, and may set a rectification instead.
+/// Sets the camera, with the size that the images agree on. The user's camera takes precedence over the layout's own,
+/// which is asked for only when needed and may set a rectification instead.
 using LayoutCamera = std::function<StereoCamera(ImageSize)>;
 void setCamera(Sequence& sequence, const GivenCameras& given, const LayoutCamera& layouts_own);
-/// The camera of a pair that is rectified on the way; keeps how.
+/// The camera of a pair that is rectified while it is read; keeps the rectification in the sequence.
 StereoCamera rectifiedCamera(Sequence& sequence, const Rig& rig, ImageSize size);
 
 }  // namespace motorcade

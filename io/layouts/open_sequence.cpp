@@ -19,7 +19,7 @@ std::optional<Sequence> openKnownLayout(const SequenceSource& source) {
 
 Sequence openSequence(const fs::path& path, double fps_hz, const GivenCameras& given) {
   if (path == kStandardInput) throw UsageError("-: a stream on the standard input is read by `motorcade run` alone");
-  // Parents are looked at, so "." and a slash at the end must go.
+  // Layouts look at parent folders, so that "." and a trailing slash must go.
   SequenceSource source{fs::absolute(path).lexically_normal(), fps_hz, given};
   if (!source.path.has_filename()) source.path = source.path.parent_path();
   try {

@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// From KITTI's calib.txt, or from a calibration of a pair that is not rectified.
+/// The camera from KITTI's calib.txt, or from the calibration of a pair that is not rectified.
 StereoCamera cameraOf(Sequence& sequence, bool any_pair, ImageSize size) {
   const fs::path& folder = sequence.folder;
   if (const auto camera = cameraIn(sequence, folder, {.any_pair = any_pair}, size)) return *camera;

@@ -25,7 +25,7 @@ std::optional<ImageHeader> headerOf(const std::filesystem::path& file) {
   }
 }
 
-/// The first image of a side that can be read tells of all.
+/// The header of the first image of a side that can be read stands for all.
 std::optional<ImageHeader> firstHeader(const Sequence& sequence, StereoSide side) {
   for (const FramePaths& frame : sequence.frames)
     if (const auto header = headerOf(frame.of(side))) return header;

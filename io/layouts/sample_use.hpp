@@ -8,14 +8,14 @@
 namespace motorcade {
 
 /// Chooses how 16-bit samples become gray, for the whole drive and both sides alike. Pairs spread over the drive
-/// decide, so that a part of it is converted as the whole is. Empty for 8-bit images.
+/// decide, so that a part of it is converted like the whole. Empty for 8-bit images.
 std::optional<SampleUse> sampleUseOf(const Sequence& sequence);
 
-/// The mosaic that a calibration in YAML tells of, `bayer_pattern: RGGB` of the pair or of `cam0`; mostly none. Throws
-/// InputError for no such pattern.
+/// The mosaic that a calibration in YAML gives, as `bayer_pattern: RGGB` of the pair or of `cam0`; mostly none. Throws
+/// InputError for an unknown pattern.
 std::optional<BayerPattern> toldMosaic(const std::filesystem::path& calibration);
-/// The mosaic that the user gives, else the sequence's own. Throws UsageError for no such pattern, and InputError where
-/// an image has colors.
+/// The mosaic that the user gives, else the sequence's own. Throws UsageError for an unknown pattern, and InputError
+/// where an image has colors.
 std::optional<BayerPattern> mosaicOf(const Sequence& sequence, const GivenCameras& given);
 
 }  // namespace motorcade

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFoldersNamed = 6;
 
-/// What a folder holds, as a message tells it.
+/// Content of a folder, as a message describes it.
 struct Content {
   std::vector<fs::path> of_images;  // sub-folders with images
   std::vector<std::string> folders, calibrations;
@@ -80,7 +80,7 @@ std::vector<std::string> sequencesIn(const fs::path& folder) {
   return names;
 }
 
-/// What to run so that what there is becomes a sequence.
+/// Advice on how to turn the content of the folder into a sequence.
 std::string advice(const fs::path& folder, const Content& content) {
   if (const auto variations = virtualKittiVariations(folder); !variations.empty())
     return "\nThese folders in it are drives of Virtual KITTI 2: " + listed(variations) +

@@ -115,7 +115,7 @@ std::string allLike(const fs::path& image) {
   return shellPattern(image.parent_path(), pattern);
 }
 
-/// The names of a group of images as a pattern: digits that differ are left open.
+/// The names of a group of images as a pattern, with wildcards for digits that differ.
 std::string patternOf(const std::vector<NameParts>& names, const std::set<std::size_t>& kept,
                       const std::string& extension) {
   std::string pattern;
@@ -124,8 +124,7 @@ std::string patternOf(const std::vector<NameParts>& names, const std::set<std::s
   return pattern + extension;
 }
 
-/// Two groups of images by what their names have in common, as patterns: words that differ, or a digit that has two
-/// values.
+/// Patterns of two groups of images, split by words that differ in their names, or by a digit that has two values.
 std::optional<std::pair<std::string, std::string>> twoGroups(const std::vector<fs::path>& images) {
   std::map<std::string, std::vector<NameParts>> kinds;
   for (const fs::path& image : images) {
@@ -155,7 +154,7 @@ std::string ofTwoGroups(const fs::path& folder, const std::pair<std::string, std
          "\n  ln -s -t DRIVE/right " + shellPattern(folder, patterns.second) + kThen;
 }
 
-/// Twice as wide as high, and more: each may be a pair.
+/// True for images at least twice as wide as high: each may be a pair.
 bool mayBeSideBySide(const fs::path& image) {
   try {
     const ImageSize size = readImageSize(image);

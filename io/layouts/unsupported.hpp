@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Recordings that are not read, and how they become folders of images that are.
+/// Recordings that are not read, and how to convert them to folders of images that are.
 namespace motorcade {
 
 /// A recording in one file: a bag of messages or a video.

@@ -8,7 +8,7 @@
 #include "io/truth/virtual_kitti.hpp"
 
 /// Virtual KITTI 2: SceneNN/VARIATION with frames/rgb/Camera_0 and Camera_1. The tables and the instances are archives
-/// of their own, unpacked over the images, or into a folder beside them or beside their scenes.
+/// of their own. They may be unpacked over the images, into a folder beside them or beside their scenes.
 namespace motorcade {
 namespace {
 
@@ -33,8 +33,8 @@ std::vector<fs::path> foldersIn(const fs::path& folder) {
   return folders;
 }
 
-/// The folders that may hold a variation's files: its own, and those of the same scene and variation in what other
-/// archives were unpacked into.
+/// The folders that may hold a variation's files: its own, and those of the same scene and variation in folders of
+/// other archives.
 std::vector<fs::path> placesOf(const fs::path& variation) {
   const fs::path root = variation.parent_path().parent_path();
   const fs::path inside = variation.parent_path().filename() / variation.filename();
@@ -52,7 +52,7 @@ fs::path placeWith(const std::vector<fs::path>& places, const fs::path& file) {
   return found == places.end() ? fs::path() : *found;
 }
 
-/// The masks name their frames as the tables do, and count only where the drive has all frames.
+/// The masks' folder. The masks name their frames as the tables do, and are used only where the drive has all frames.
 fs::path instancesOf(const Sequence& sequence, const std::vector<fs::path>& places) {
   for (std::size_t i = 0; i < sequence.frames.size(); ++i)
     if (imageNumber(sequence.frames[i].left) != static_cast<std::int64_t>(i)) return {};

@@ -21,18 +21,18 @@ struct CameraInfoMessage {
   bool reduced = false;  // the images are binned, or a region of the sensor's
 };
 
-/// The most coefficients that a model of distortion has; a message with more is refused by whoever receives it.
+/// The most coefficients of a distortion model. A receiver refuses a message with more.
 inline constexpr std::size_t kMostCoefficients = 14;
 
-/// The messages of a pair, with names for what is told to the user, as the topics.
+/// The messages of a pair, with names for the user, as the topics.
 struct CameraInfoPair {
   CameraInfoMessage left{}, right{};
   std::string left_name{}, right_name{};
 };
 
-/// The rig that both messages tell of; the right one's P has the baseline. Images of which `rectified` says that they
-/// were rectified before they were sent go by P alone. `Rig::rectified` is set where nothing is left to be done.
-/// Throws InputError naming the message.
+/// The rig that both messages describe; the right one's P has the baseline. Images that were rectified before they were
+/// sent, by `rectified`, use P alone. `Rig::rectified` is set where nothing is left to be done. Throws InputError
+/// naming the message.
 Rig rigOf(const CameraInfoPair& infos, bool rectified);
 
 }  // namespace motorcade

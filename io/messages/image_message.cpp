@@ -52,7 +52,7 @@ PixelKind pixelKindOf(const ImageMessage& message, const std::string& name) {
   return *found;
 }
 
-/// Throws InputError where the rows do not fit into the bytes that came.
+/// Throws InputError where the rows do not fit into the message's bytes.
 void requireBytes(const ImageMessage& message, const PixelKind& kind, const std::string& name) {
   const std::uint64_t row = kind.pixel_bytes * std::uint64_t{message.width};
   if (message.step < row)
@@ -77,7 +77,7 @@ unsigned sampleAt(const std::uint8_t* bytes, bool big_endian) {
   return big_endian ? 256U * bytes[0] + bytes[1] : 256U * bytes[1] + bytes[0];
 }
 
-/// Fills a row by the function that gives the 8-bit sample at a byte.
+/// Fills a row by a function that returns the 8-bit sample at a byte.
 template <class Sample>
 void fillGray(const std::uint8_t* pixels, const PixelKind& kind, Image& image, int y, const Sample& sample) {
   std::uint8_t* const gray = image.mutableRow(y);
@@ -146,7 +146,7 @@ Image grayImageOf(const ImageMessage& message, const std::string& name, ImagePoo
   return grayOfMosaic(samples, *mosaic, pool);
 }
 
-/// A driver that compresses a mosaic may have made colors of it before.
+/// Decodes a compressed message. A driver may have converted a mosaic to colors before compressing it.
 Image grayImageOf(const CompressedImageMessage& message, const std::string& name, ImagePool& pool,
                   const MessageConversion& conversion) {
   const ImageHeader header = imageHeaderOf(message, name);

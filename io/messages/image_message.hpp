@@ -10,11 +10,11 @@
 #include "io/images/image_file.hpp"
 #include "io/images/sample_bits.hpp"
 
-/// Images in messages as cameras' drivers send them, whatever wire or file they came by. `name` is for messages to the
-/// user; what cannot be used is an InputError that begins with it.
+/// Images in messages as cameras' drivers send them, from any wire or file. `name` is for messages to the user; an
+/// unusable message is an InputError that begins with it.
 namespace motorcade {
 
-/// ROS' sensor_msgs/Image. The bytes belong to whoever received them.
+/// ROS' sensor_msgs/Image. The receiver owns the bytes.
 struct ImageMessage {
   std::int64_t stamp_ns = 0;
   std::string frame_id{};
@@ -41,7 +41,7 @@ struct MessageConversion {
   int max_pixels = kMaxImage_pixels;    // larger images are refused
 };
 
-/// Size, channels and bits that a message tells; its bytes are checked to be as many.
+/// Size, channels and bits of a message. Throws unless it has the bytes for them.
 ImageHeader imageHeaderOf(const ImageMessage& message, const std::string& name);
 ImageHeader imageHeaderOf(const CompressedImageMessage& message, const std::string& name);
 
@@ -49,7 +49,7 @@ ImageHeader imageHeaderOf(const CompressedImageMessage& message, const std::stri
 int brightestSampleOf(const ImageMessage& message, const std::string& name);
 int brightestSampleOf(const CompressedImageMessage& message, const std::string& name);
 
-/// The image as 8-bit gray; colors are weighted as those of files are, mosaics become the gray of their colors.
+/// The image as 8-bit gray. Colors are weighted as those of files, mosaics become the gray of their colors.
 Image grayImageOf(const ImageMessage& message, const std::string& name, ImagePool& pool,
                   const MessageConversion& conversion = {});
 Image grayImageOf(const CompressedImageMessage& message, const std::string& name, ImagePool& pool,

@@ -3,7 +3,7 @@
 namespace motorcade {
 namespace {
 
-/// The topic that a transport, `compressed`, was given for.
+/// The topic without a transport such as `compressed`.
 std::string_view withoutTransport(std::string_view topic) {
   constexpr std::string_view kCompressed = "/compressed";
   if (topic.ends_with(kCompressed)) topic.remove_suffix(kCompressed.size());

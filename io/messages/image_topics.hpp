@@ -7,7 +7,7 @@
 namespace motorcade {
 
 /// True for images that were rectified before they were sent: `image_rect`, `image_rect_color`, ..., also compressed.
-/// Their camera_info is that of the raw images all the same.
+/// Their camera_info still describes the raw images.
 bool isRectifiedTopic(std::string_view image_topic);
 
 /// The camera_info beside an image topic: `/left/camera_info` of `/left/image_raw` and `/left/image_raw/compressed`.

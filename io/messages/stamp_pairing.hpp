@@ -18,9 +18,9 @@ inline constexpr StereoSide otherThan(StereoSide side) {
   return side == StereoSide::kLeft ? StereoSide::kRight : StereoSide::kLeft;
 }
 
-/// Pairs two cameras' messages by their capture stamps, in the order in which they come. Each side may miss messages
-/// or send more than the other, and its clock may be set back: a pair ends the waiting of all that came before it.
-/// `Message` has a member stamp_ns.
+/// Pairs two cameras' messages by their capture stamps, in the order of arrival. Each side may miss messages or send
+/// more than the other, and its clock may be set back: a pair drops all messages that came before it. `Message` has a
+/// member stamp_ns.
 template <class Message>
 class StampPairing {
  public:
@@ -55,7 +55,7 @@ class StampPairing {
   std::int64_t unpaired(StereoSide side) const { return unpaired_[indexOf(side)]; }
 
  private:
-  /// Unsigned: stamps of a wrong unit may be further apart than an integer holds.
+  /// The difference is unsigned, as stamps of a wrong unit may be further apart than an integer holds.
   static std::uint64_t apart_ns(std::int64_t a, std::int64_t b) {
     return static_cast<std::uint64_t>(std::max(a, b)) - static_cast<std::uint64_t>(std::min(a, b));
   }

@@ -23,7 +23,7 @@ constexpr std::array kCauses = {FrameCause::kNone,         FrameCause::kAfterGap
 constexpr std::array<std::string_view, kCauseCount> kCauseNames = {
     "none", "after_gap", "few_points", "nothing_found", "unlinked", "failed", "unusable", "out_of_order", "too_late"};
 
-/// What later versions write too.
+/// Reads the columns that were added in later versions.
 void readWaits(FieldReader& fields, FrameRow& row) {
   row.has_waits = true;
   row.entry_wait_ms = fields.number("entry_wait_ms");

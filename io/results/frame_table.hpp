@@ -9,7 +9,7 @@
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
 
-/// `frames.csv` of a run folder: what became of each frame, and where its time went.
+/// `frames.csv` of a run folder: the outcome of each frame, and its times.
 namespace motorcade {
 
 std::string_view statusName(FrameStatus status);

@@ -7,7 +7,7 @@
 
 #include "core/messages.hpp"
 
-/// `object_points.csv` (docs/formats.md): where objects' points were seen.
+/// `object_points.csv` (docs/formats.md): image positions of objects' points.
 namespace motorcade {
 
 inline constexpr const char* kObjectPointsFile = "object_points.csv";

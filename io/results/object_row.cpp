@@ -33,7 +33,7 @@ std::optional<ObjectAcceleration> readAcceleration(FieldReader& fields) {
       .along_mps2 = *cells[0], .along_sigma_mps2 = *cells[1], .yaw_radps2 = *cells[2], .yaw_sigma_radps2 = *cells[3]};
 }
 
-/// Columns that came later: how the object turns and how old it is, and between them what placeOf tells.
+/// Reads columns that came later: rotation, place and age. Those that placeOf computes are passed over.
 void readMotion(FieldReader& fields, ObjectEstimate& object) {
   for (int column = 0; column < 2; ++column) fields.number("heading");
   object.yaw_rate_radps = fields.number("yaw_rate_radps");

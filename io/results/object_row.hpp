@@ -9,7 +9,7 @@
 /// The rows of `objects_online.csv` and `objects_final.csv` (docs/formats.md).
 namespace motorcade {
 
-/// What every header begins with: runs of earlier versions have no columns after it.
+/// The columns that every header begins with. Runs of earlier versions have no others.
 inline constexpr std::string_view kObjectsHeaderStart =
     "frame,track_id,state,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz,vx,vy,vz,speed_sigma_mps,points,left,top,right,"
     "bottom";
@@ -25,8 +25,8 @@ std::string_view stateName(ObjectState state);
 std::string_view kindName(ObjectKind kind);
 
 std::string objectLine(FrameId frame, const ObjectEstimate& object);
-/// All columns but the frame, which is read already; what follows from others is passed over. Fails with the column's
-/// name.
+/// Reads all columns but the frame, which is read already. Columns that follow from others are passed over. Fails with
+/// the column's name.
 ObjectEstimate readObject(FieldReader& fields);
 
 }  // namespace motorcade

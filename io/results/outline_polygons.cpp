@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-/// The mask's pixels that lie in the image, and where the first of them lies.
+/// The mask's pixels that lie in the image, and the position of the first of them.
 struct Pixels {
   cv::Mat inside;
   int left_px, top_px;

@@ -24,7 +24,7 @@ using Kind = PoseGraph::Problem::Kind;
 
 constexpr std::size_t kMaxNumbers = 28;  // of an edge in space: 7 of the measurement, 21 of the information
 
-/// What a line of a known tag holds.
+/// Fields of a line with a known tag.
 struct TagFormat {
   std::string_view tag;
   bool planar;
@@ -44,7 +44,7 @@ std::string_view takeLine(std::string_view& rest) {
   return line;
 }
 
-/// Goes by hand: the library's searches for one of several characters took half of the time that a file takes.
+/// Splits off a word by hand. The library's search for one of several characters took half of a file's time.
 std::string_view takeWord(std::string_view& rest) {
   const auto blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   const char *at = rest.data(), *const end = at + rest.size();
@@ -84,13 +84,13 @@ std::string adviceFor(std::string_view tag) {
   return "";
 }
 
-/// As an error message shows it.
+/// Quotes a word for an error message.
 std::string shown(std::string_view word) {
   std::string text = "'";
   return text.append(printable(word)).append("'");
 }
 
-/// Row by row, the upper triangle.
+/// Builds the matrix from its upper triangle, row by row.
 PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   PoseGraph::Information information(size, size);
   std::size_t next = 0;
@@ -99,7 +99,7 @@ PoseGraph::Information informationOf(std::span<const double> upper, int size) {
   return information;
 }
 
-/// In some direction, by more than rounding.
+/// True when the information is negative in some direction by more than rounding.
 bool isNegative(const PoseGraph::Information& information) {
   constexpr double kRounding = 1e-9;
   const Eigen::VectorXd diagonal = information.diagonal();
@@ -110,7 +110,7 @@ bool isNegative(const PoseGraph::Information& information) {
   return !(values.minCoeff() >= -kRounding * std::max(1.0, values.maxCoeff()));
 }
 
-/// Goes through a file line by line. Knows where it is, so that errors and problems can tell.
+/// Reads a file line by line. Knows its position, for errors and problems.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file), content_(readWhole(file)) {}

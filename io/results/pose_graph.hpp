@@ -29,7 +29,7 @@ struct PoseGraph {
     Information information;
     bool definite = true;  // the information leaves no direction open
   };
-  /// What is wrong with the graph without making the rest of it useless.
+  /// A fault that leaves the rest of the graph usable.
   struct Problem {
     enum class Kind { kNotFinite, kNotPositiveDefinite, kDuplicateVertex, kSelfEdge, kRepeatedEdge };
     Kind kind;
@@ -50,10 +50,10 @@ struct PoseGraph {
 
 std::string_view nameOf(PoseGraph::Problem::Kind kind);
 
-/// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Throws an InputError that names
-/// file, line and how to fix it for what is not written as g2o; PARAMS lines, which other kinds of edges need, are
-/// passed over. Edges that are not finite, have negative information or join a pose to itself are left out, of vertices
-/// of one id the first is kept: these become problems.
+/// Reads VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT, EDGE_SE3:QUAT, FIX and FRAME lines. Passes over PARAMS lines, which
+/// other kinds of edges need. Throws an InputError that names file, line and remedy for a line that is not g2o. Leaves
+/// out edges that are not finite, have negative information or join a pose to itself. Keeps the first of vertices with
+/// the same id. What is left out becomes a problem.
 PoseGraph readPoseGraph(const std::filesystem::path& file);
 
 /// Numbers are written with all their digits. Throws OutputError.

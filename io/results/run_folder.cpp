@@ -29,7 +29,7 @@ fs::path preparedFolder(const fs::path& folder) {
   return folder;
 }
 
-/// For this run alone; the summary of an earlier one goes.
+/// Locks the folder for this run alone and removes the summary of an earlier one.
 FolderLock locked(const fs::path& folder) {
   FolderLock lock(folder);
   std::error_code error;

@@ -15,26 +15,25 @@
 namespace motorcade {
 
 /// Writes a run folder (docs/formats.md). Frames come in order, each exactly once as online and once as final, and at
-/// most once as settled; a line per write keeps the folder readable at any moment. Not thread safe. Every failure is an
-/// OutputError naming the file.
+/// most once as settled. Each write adds whole lines, so that the folder is readable at any moment. Not thread safe.
+/// Every failure is an OutputError naming the file.
 class RunFolderWriter {
  public:
-  /// Makes the folder if need be, keeps it for this run alone, and makes its files anew; a summary of an earlier run is
-  /// removed first.
+  /// Makes the folder if need be, locks it for this run, removes an earlier run's summary and makes the files anew.
   explicit RunFolderWriter(const std::filesystem::path& folder);
   ~RunFolderWriter();
   RunFolderWriter(const RunFolderWriter&) = delete;
   RunFolderWriter& operator=(const RunFolderWriter&) = delete;
 
   void writeConfig(std::string_view toml);
-  /// `camera_online.*`, `objects_online.csv`, and where the estimate has covariances, `covariances.csv` and
+  /// Writes `camera_online.*`, `objects_online.csv`, and where the estimate has covariances, `covariances.csv` and
   /// `pose_covariances_online.csv`.
   void writeOnline(const FrameEstimate& estimate);
-  /// What stands in the final files until `finish`, so that a run that is killed has some.
+  /// Writes what the final files hold until `finish`, so that a run that is killed has some.
   void writeSettled(const FrameEstimate& estimate);
-  /// What stands there from then on: as online, but `covariances_final.csv`.
+  /// Writes what the final files hold from `finish` on: the same files as online, but `covariances_final.csv`.
   void writeFinal(const FrameEstimate& estimate);
-  /// `frames.csv` and `trace.json`. Notices when the folder is no longer there.
+  /// Writes `frames.csv` and `trace.json`. Notices when the folder is no longer there.
   void writeTiming(const FrameTiming& timing);
   /// Closes all files, then writes `summary.json`: a run with this file is complete.
   void finish(std::string_view summary_json);
@@ -57,7 +56,7 @@ class RunFolderWriter {
   bool finished_ = false;
 };
 
-/// A run folder as read back; a run that was killed has fewer rows and no summary.
+/// A run folder as it is read back. A run that was killed has fewer rows and no summary.
 struct RunFolder {
   struct ObjectRow {
     FrameId frame;

@@ -33,7 +33,7 @@ std::string threadName(int thread) {
 
 TraceFile::TraceFile(const std::filesystem::path& file) : file_(file) { file_.writeLine("["); }
 
-/// Without its end: `add` closes it.
+/// The text of an event without its end, which `add` writes.
 std::string TraceFile::event(std::string_view name, char phase, int thread, SteadyTime at) const {
   std::string text;
   text.reserve(160);
@@ -46,7 +46,7 @@ std::string TraceFile::event(std::string_view name, char phase, int thread, Stea
 
 void TraceFile::add(const std::string& event) { lines_.append(event).append("},\n"); }
 
-/// All lines of a frame in one write: each is whole, also when the run is killed.
+/// Writes all lines of a frame at once: each is whole, also when the run is killed.
 void TraceFile::write(const FrameTiming& timing) {
   if (!origin_) origin_ = timing.due;
   lines_.clear();
@@ -91,8 +91,8 @@ void TraceFile::addWork(const FrameTiming& timing) {
   }
 }
 
-/// The whole way of a frame and its waits overlap with those of the next frame, which only the asynchronous kind of
-/// event can show.
+/// Adds a frame's path and its waits. They overlap with those of the next frame, which only asynchronous events can
+/// show.
 void TraceFile::addWaits(const FrameTiming& timing) {
   const std::string id = R"(,"id":)" + std::to_string(timing.head.frame.value);
   const auto from_to = [&](std::string_view category, std::string_view name, SteadyTime from, SteadyTime to) {
@@ -130,7 +130,7 @@ void TraceFile::addArrows(const FrameTiming& timing) {
   arrow("frame to frame", 'f', timing.of(Stage::kOpticalFlow), timing.head.frame);
 }
 
-/// As each frame finds it when it enters the graph.
+/// Adds the number of frames in flight when this one enters the graph.
 void TraceFile::addInFlight(const FrameTiming& timing) {
   std::erase_if(published_, [&](SteadyTime published) { return published <= timing.admitted; });
   published_.push_back(timing.published);

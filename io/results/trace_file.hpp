@@ -11,10 +11,10 @@
 
 namespace motorcade {
 
-/// `trace.json` of a run folder: Chrome trace events in array form, an event a line, for any viewer of such traces.
-/// Stages on the threads that did them, decoding ahead, waits, frames that were dropped, how many were in flight; with
-/// arrows along each frame's way, and from a frame to the next where a stage remembers the one before. Frames come in
-/// order. Every failure is an OutputError naming the file.
+/// `trace.json` of a run folder: Chrome trace events in array form, an event per line, for any viewer of such traces.
+/// It shows the stages on their threads, decoding ahead, waits, dropped frames and the number in flight. Arrows follow
+/// each frame, and link a frame to the next where a stage remembers the previous one. Frames come in order. Every
+/// failure is an OutputError naming the file.
 class TraceFile {
  public:
   explicit TraceFile(const std::filesystem::path& file);

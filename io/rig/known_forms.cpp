@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// A form that is told by what it begins with and by texts that it has all of.
+/// A form that is recognized by its beginning and by texts that it all contains.
 struct KnownForm {
   const char* name;
   std::string_view begin;

@@ -5,8 +5,8 @@
 
 namespace motorcade {
 
-/// Throws InputError with the name of the form and what to give in its place, where a calibration's text is of a form
-/// that is known but not read; else returns.
+/// Throws InputError for a calibration of a form that is known but not read. The message has the name of the form and
+/// what to give in its place.
 void throwKnownForm(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace motorcade

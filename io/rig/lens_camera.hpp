@@ -20,20 +20,20 @@ struct LensCamera {
   ImageSize size{};  // of its images; empty where the calibration does not tell
 };
 
-/// Where a camera images a ray, and back. Rays are in the camera's own frame: x right, y down, z ahead.
+/// Projection of a lens and its inverse. Rays are in the camera's own frame: x right, y down, z ahead.
 class LensModel {
  public:
   explicit LensModel(const LensCamera& camera);
 
-  /// Empty for a ray from behind, or so far aside that the polynomial of the lens no longer grows there: such rays
-  /// would fold back into the image.
+  /// Empty for a ray from behind, and for one so far aside that the lens polynomial no longer grows. Such rays would
+  /// fold back into the image.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& ray) const;
   /// A ray with z = 1, or of length 1 through an equidistant lens. Empty for a pixel that no ray reaches.
   std::optional<Eigen::Vector3d> rayThrough(const Eigen::Vector2d& pixel_px) const;
 
  private:
-  /// Distance from the middle of the image, in focal lengths, by that of the ray: its tangent, or its angle with an
-  /// equidistant lens.
+  /// Distance from the middle of the image, in focal lengths. The argument is the ray's distance: its tangent, or its
+  /// angle with an equidistant lens.
   double distorted(double undistorted) const { return undistorted * factor(undistorted * undistorted); }
   double factor(double squared) const;
   std::optional<double> undistorted(double distorted) const;

@@ -23,7 +23,7 @@ Rig rigOfPlaced(const YamlPart& root, const BodyCamera& left, const BodyCamera& 
           .transform = "the transform by " + key};
 }
 
-/// Fails for models whose images no pinhole with one of the two distortions takes.
+/// Fails for camera models whose images no pinhole with one of the two distortions can describe.
 void requirePinholeModel(const YamlPart& part, std::initializer_list<std::string_view> keys) {
   if (const std::string model = textOr(part, keys, "pinhole"); model != "pinhole" && model != "PINHOLE")
     part.at(keys).fail("is " + printable(model) +

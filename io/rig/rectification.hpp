@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// How two raw images become a rectified pair.
+/// The geometry that turns two raw images into a rectified pair.
 struct Rectification {
   LensCamera left, right;
   Eigen::Matrix3d R_left = Eigen::Matrix3d::Identity();  // p_rectified = R * p_raw, of each camera
@@ -21,7 +21,7 @@ struct Rectification {
   StereoCamera camera{};  // what takes the rectified pair
 };
 
-/// Two cameras as a calibration tells of them.
+/// Two cameras as a calibration describes them.
 struct Rig {
   std::filesystem::path file{};  // that tells, for messages
   LensCamera left{}, right{};
@@ -33,13 +33,13 @@ struct Rig {
   std::vector<std::filesystem::path> files{};  // all that were read
 };
 
-/// The rectification that the calibration gives, else our own: both cameras turn until their x axes lie along the
-/// baseline, and their z axes along the mean of both viewing directions as far as that allows; the focal length is the
+/// The rectification that the calibration gives, else our own. Both cameras turn until their x axes lie along the
+/// baseline. Their z axes lie along the mean of both viewing directions as far as that allows. The focal length is the
 /// shortest at which both images fill the frame, but at least `kLeastZoom` of the cameras'. The rectified images are as
 /// large as the raw ones. Throws InputError naming the file.
 Rectification rectificationOf(const Rig& rig, ImageSize size);
 
-/// Of a very wide lens, the edges are given up rather than the resolution in the middle.
+/// Least zoom of the rectified pair. A very wide lens loses its edges rather than the resolution in the middle.
 inline constexpr double kLeastZoom = 0.7;
 
 }  // namespace motorcade

@@ -29,7 +29,7 @@ Place placed(double position_px, int size) {
   return {static_cast<std::int16_t>(first), static_cast<std::uint8_t>(fixed - kOne * first), exact == fixed};
 }
 
-/// Where the pixels of a block come from; see Remap.
+/// Source positions of the pixels of a block; see Remap.
 struct Sources {
   const std::int16_t *x, *y;
   const std::uint8_t *right, *down;

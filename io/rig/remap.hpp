@@ -11,25 +11,25 @@
 
 namespace motorcade {
 
-/// Takes one camera's images from raw to rectified, pixel by pixel, by bilinear interpolation. Where a pixel shows what
-/// lies outside the raw image, the nearest pixel of its edge stands there.
-/// Built once per camera; applying it changes nothing in it, from any thread.
+/// Rectifies the images of one camera, pixel by pixel, by bilinear interpolation. A pixel whose source lies outside the
+/// raw image takes the nearest pixel of its edge. Built once per camera; applying it changes nothing in it, from any
+/// thread.
 class Remap {
  public:
   /// `R` takes directions of the raw camera to those of the rectified one, `target`.
   Remap(const LensCamera& raw, const Eigen::Matrix3d& R, const StereoCamera& target, ImageSize raw_size);
 
-  /// An image of the raw size in, one of the rectified size out.
+  /// Takes an image of the raw size and returns one of the rectified size.
   Image operator()(const Image& raw, ImagePool& pool) const;
 
-  /// Of the rectified pixels, those outside the raw image.
+  /// Share of the rectified pixels whose source lies outside the raw image.
   double shareOutside() const;
 
-  /// Where a pixel comes from, as precisely as it is stored.
+  /// Source position of a rectified pixel in the raw image, to the stored precision.
   Eigen::Vector2d source_px(int u, int v) const;
 
-  /// Positions are multiples of 1/64 px: the products of two weights and a pixel stay exact in 32 bits, and the error
-  /// of at most 1/128 px is a tenth of what a match is sure to.
+  /// Bits of the fraction of positions, which are multiples of 1/64 px. Products of two weights and a pixel stay exact
+  /// in 32 bits. The error of at most 1/128 px is a tenth of a match's uncertainty.
   static constexpr int kFractionBits = 6;
 
  private:
@@ -37,7 +37,7 @@ class Remap {
 
   ImageSize raw_size_, size_;
   std::size_t outside_ = 0;
-  /// Upper left of the four pixels that are weighed, and how far right and down of it, in 64ths.
+  /// Upper left of the four pixels that are weighed, and the offset to the right and down from it, in 64ths.
   std::vector<std::int16_t> x_, y_;
   std::vector<std::uint8_t> right_, down_;
 };

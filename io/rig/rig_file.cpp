@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A reader of one form, and how many files that may have.
+/// A reader of one form, and the number of files that it may have.
 struct RigReader {
   std::optional<Rig> (*read)(RigParts);
   std::size_t most_files;

@@ -10,7 +10,7 @@
 /// matrices, EuRoC's sensor files, settings of visual SLAM systems and others (rig_readers.hpp).
 namespace motorcade {
 
-/// A file that is no calibration of a form that is known.
+/// A file that is no calibration of a known form.
 struct UnknownCalibration : InputError {
   using InputError::InputError;
 };
@@ -18,9 +18,9 @@ struct UnknownCalibration : InputError {
 /// One file, or two that belong together. Throws InputError naming file, line and key.
 Rig readRig(const std::vector<std::filesystem::path>& files);
 
-/// Of EuRoC's `cam0/sensor.yaml` and `cam1/sensor.yaml`.
+/// Reads EuRoC's `cam0/sensor.yaml` and `cam1/sensor.yaml`.
 Rig readEurocRig(const std::filesystem::path& left, const std::filesystem::path& right);
-/// From the left camera to the body that such a file places it on.
+/// Reads the transform from the left camera to the body on which such a file places it.
 SE3 readEurocPlacement(const std::filesystem::path& sensor_file);
 
 }  // namespace motorcade

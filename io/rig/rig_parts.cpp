@@ -124,8 +124,8 @@ void setDistortion(LensCamera& camera, const std::string& model, const YamlPart&
   setDistortion(camera, model, coefficients.numbers(), coefficients);
 }
 
-/// Fish-eye lenses lie between the orthographic image, whose first coefficient is -1/6, and the pinhole's (1/3);
-/// the tangential coefficients of others are a few thousandths.
+/// Fish-eye lenses lie between the orthographic image, whose first coefficient is -1/6, and the pinhole's (1/3). The
+/// tangential coefficients of other lenses are a few thousandths.
 void setDistortion(LensCamera& camera, const YamlPart& coefficients) {
   constexpr double kBelowFishEyes = -0.2, kMostTangential = 0.01;
   const std::vector<double> given = coefficients.numbers();

@@ -9,37 +9,38 @@
 #include "io/rig/rectification.hpp"
 #include "io/rig/yaml_file.hpp"
 
-/// What the calibrations of different makers have in common.
+/// Parsers that the calibrations of different makers share.
 namespace motorcade {
 
 Eigen::Matrix3d matrix33(const YamlPart& part);
-/// Of nine numbers that must be a rotation's, which is put back onto SO(3) from its printed digits.
+/// Reads a rotation from nine numbers and puts it back onto SO(3) from its printed digits. Fails if they are no
+/// rotation.
 Eigen::Matrix3d rotation33(const YamlPart& part);
 /// Reads a transform from three or four rows of four numbers.
 SE3 transform44(const YamlPart& part);
 /// The difference of two transforms that must be one, as a message tells it; empty where they agree.
 std::string disagreement(const SE3& a, const SE3& b);
 
-/// The text of a key, or another where it is not there.
+/// The text of a key, or `otherwise` where it is missing.
 std::string textOr(const YamlPart& part, std::initializer_list<std::string_view> keys, const std::string& otherwise);
 /// Right camera from left where both are placed on one body.
 SE3 betweenPlaced(const SE3& T_body_left, const SE3& T_body_right);
 
 /// Sets the focal lengths and the principal point from fx fy cx cy, or from a matrix fx 0 cx, 0 fy cy, 0 0 1.
 void setIntrinsics(LensCamera& camera, const YamlPart& part);
-/// The same from fx fy cx cy that come from elsewhere; the part is the one to name where they are wrong.
+/// Sets them from fx fy cx cy of another place; errors name `part`.
 void setIntrinsics(LensCamera& camera, const std::array<double, 4>& fx_fy_cx_cy, const YamlPart& part);
 /// Sets the distortion from a model's name in any of the spellings in use, and its coefficients. Fails for coefficients
 /// without a model.
 void setDistortion(LensCamera& camera, const std::string& model, const YamlPart& coefficients);
 void setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients,
                    const YamlPart& part);
-/// The same from elsewhere; gives what is wrong, to be told after the name of the coefficients, or nothing.
+/// Sets the distortion from another place. Returns what is wrong, to follow the name of the coefficients, or nothing.
 std::string setDistortion(LensCamera& camera, const std::string& model, std::vector<double> coefficients);
-/// The same where OpenCV's calibration or ROS' names no model. Four coefficients are as well those of a fish-eye lens:
-/// they are refused, unless no such lens has them.
+/// Sets the distortion where OpenCV's calibration or ROS' names no model. Four coefficients may also be those of a
+/// fish-eye lens: they are refused, unless no such lens has them.
 void setDistortion(LensCamera& camera, const YamlPart& coefficients);
-/// Width or height of an image; fails for what cannot be one.
+/// Width or height of an image; fails for an impossible value.
 int imageSide(const YamlPart& part, double side_px);
 /// Sets the size of the images from two numbers.
 void setSize(LensCamera& camera, const YamlPart& part);

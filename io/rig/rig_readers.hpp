@@ -7,13 +7,14 @@
 #include "io/rig/rectification.hpp"
 #include "io/rig/yaml_file.hpp"
 
-/// Readers of the makers' forms of a calibration, given as one file or as two, the left camera's first. Each gives a
-/// rig where the files are of its form, nothing elsewhere. Throws InputError where they are, but cannot be used.
+/// Readers of the makers' forms of a calibration, given as one file or as two, the left camera's first. Each returns a
+/// rig if the files are of its form, and nothing otherwise. Throws InputError for files of its form that cannot be
+/// used.
 namespace motorcade {
 
 using RigParts = std::span<const YamlPart>;
 
-/// A calibration that tells of one camera of the pair alone.
+/// A calibration of only one camera of the pair.
 struct OneCameraError : InputError {
   using InputError::InputError;
 };

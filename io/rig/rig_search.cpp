@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 using Files = std::vector<fs::path>;
 
-/// A calibration in a folder, and the pair that it tells of; none where it cannot be used.
+/// A calibration in a folder, and its pair; none where it cannot be used.
 struct Candidate {
   Files files;
   std::optional<Rig> rig{};
@@ -44,7 +44,7 @@ std::set<fs::path> filesOf(const fs::path& folder) {
   return files;
 }
 
-/// The same name with one of two words exchanged for the other; empty where it is not in there.
+/// The same name with one of two words exchanged for the other; empty where it has neither.
 fs::path partnerOf(const fs::path& file, const std::string& word, const std::string& other) {
   std::string name = file.filename().string();
   const std::size_t found = name.rfind(word);
@@ -69,7 +69,7 @@ bool hasUsualName(const fs::path& file) {
   return std::ranges::any_of(kWords, [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-/// In the order in which they are looked for.
+/// Files that may be calibrations, in the order in which they are tried.
 std::vector<Files> filesInQuestion(const fs::path& folder, RigNames names) {
   const auto files = filesOf(folder);
   std::vector<Files> all = pairsOf(files);

@@ -9,9 +9,9 @@ namespace motorcade {
 /// Selects the files of a folder to look at: those whose names are usual for a pair's calibration, or all.
 enum class RigNames { kUsual, kAny };
 
-/// The files of the calibration that lies in a folder: a name with `camchain`, `stereo` or `calib` in it, two with
-/// `left` and `right` or `intrinsics` and `extrinsics`, or cam0/sensor.yaml and cam1/sensor.yaml. Empty where there is
-/// none. Throws InputError naming all where there are several that tell of different cameras.
+/// The files of the calibration in a folder. Their names have `camchain`, `stereo` or `calib` in them; two may have
+/// `left` and `right` or `intrinsics` and `extrinsics`, or be cam0/sensor.yaml and cam1/sensor.yaml. Empty where there
+/// is none. Throws InputError naming all where several describe different cameras.
 std::vector<std::filesystem::path> usualRigFiles(const std::filesystem::path& folder,
                                                  RigNames names = RigNames::kUsual);
 

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// A number under a prefix, as Camera1.fx; the other where it is not there.
+/// A number under a prefix, as Camera1.fx; `otherwise` where it is missing.
 double valueOr(const YamlPart& root, const std::string& key, double otherwise) {
   const auto found = root.find({key});
   return found ? found->number() : otherwise;
@@ -48,7 +48,7 @@ std::optional<double> settingsBaseline_m(const YamlPart& root, double fx_px) {
   return std::nullopt;
 }
 
-/// The rectified pair that `Camera.` (or `Camera1.`) and the baseline tell of.
+/// The rectified pair that `Camera.` (or `Camera1.`) and the baseline describe.
 StereoCamera settingsCamera(const YamlPart& root, const LensCamera& lens) {
   const auto baseline_m = settingsBaseline_m(root, lens.fx_px);
   if (!baseline_m)

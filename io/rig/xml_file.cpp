@@ -8,13 +8,13 @@
 namespace motorcade {
 namespace {
 
-/// Text that is not as OpenCV writes it.
+/// A text that differs from what OpenCV writes.
 struct NoXml {
   int line;
   const char* problem;
 };
 
-/// Takes elements from a text, the outer one first. Every part costs some of the text, so that it comes to an end.
+/// Takes elements from a text, the outer one first. Each part consumes some of the text, so that it comes to an end.
 class XmlReader {
  public:
   explicit XmlReader(std::string_view text) : rest_(text) {}

@@ -61,7 +61,7 @@ std::optional<double> numberOf(const std::string& text) {
   return value;
 }
 
-/// Appends the numbers of a list, however deep. False where there are too many, or something else.
+/// Appends the numbers of a list, however deep. False where there are too many, or where it holds anything else.
 bool collect(const YamlNode& node, std::vector<double>& numbers, int depth = 0) {
   constexpr int kDeepest = 4;
   if (const YamlNode* data = partNamed(node, "data"); data != nullptr && depth == 0)

@@ -12,11 +12,11 @@ namespace motorcade {
 
 struct YamlNode;
 
-/// A part of a file in YAML, JSON or OpenCV's XML, with its name for messages. Whatever is wrong in it is an InputError
-/// that names file, key and line.
+/// A part of a file in YAML, JSON or OpenCV's XML, with its name for messages. A fault in it is an InputError that
+/// names file, key and line.
 class YamlPart {
  public:
-  /// Reads a file of at most a megabyte. OpenCV's first line, `%YAML:1.0`, is accepted though YAML has none such.
+  /// Reads a file of at most a megabyte. OpenCV's first line, `%YAML:1.0`, is accepted although it is not YAML.
   static YamlPart ofFile(const std::filesystem::path& file);
 
   /// The first of several spellings of a key that is there. `A.B` is a key of that name, or B within A.

@@ -15,11 +15,11 @@
 namespace motorcade {
 namespace {
 
-// More than a megabyte of numbers has, which is the largest file that is read; a few times as much with all copies.
+// The largest file that is read, a megabyte of numbers, has fewer; copies may add a few times as much.
 constexpr std::size_t kMostNodes = std::size_t{1} << 18, kMostText_bytes = std::size_t{1} << 21;
 constexpr std::size_t kDeepest = 64;
 
-/// What no calibration has.
+/// A construct that no calibration has.
 struct NoCalibration {
   int line;
   const char* problem;
@@ -27,7 +27,7 @@ struct NoCalibration {
 
 int lineOf(const YAML::Mark& mark) { return mark.is_null() ? 0 : mark.line + 1; }
 
-/// Makes the tree from the inside out of what the parser comes across.
+/// Builds the tree from the parser's events, from the leaves up.
 class TreeBuilder : public YAML::EventHandler {
  public:
   YamlNode takeRoot() { return std::move(root_); }
@@ -73,7 +73,7 @@ class TreeBuilder : public YAML::EventHandler {
     spend(lineOf(mark), text.size());
     return {.kind = kind, .line = lineOf(mark), .text = text};
   }
-  /// Each copy is spent for, so that aliases of aliases come to an end.
+  /// Each copy counts against the bounds, so that aliases of aliases come to an end.
   YamlNode copyOf(const YamlNode& original, int line) {
     spend(line, original.key.size() + original.text.size());
     YamlNode copy{.kind = original.kind, .line = original.line, .key = original.key, .text = original.text};

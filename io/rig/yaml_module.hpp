@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-/// What the module `yaml.so` (core/module.hpp) has: yaml-cpp's parser. The number in the function's name counts up with
-/// whatever changes in this file, so that a module of another version is refused.
+/// The interface of the module `yaml.so` (core/module.hpp): yaml-cpp's parser. The number in the function's name is
+/// raised with each change in this file, so that a module of another version is refused.
 namespace motorcade {
 
 struct YamlNode {
@@ -27,7 +27,7 @@ struct YamlAnswer {
 
 inline constexpr char kYamlModule[] = "yaml", kYamlFunction[] = "motorcade_yaml_1";
 
-/// Parses a text's first document. What an alias stands for is copied, within a bound for all copies and parts.
+/// Parses a text's first document. Aliases are replaced by copies, within a bound for all copies and parts.
 extern "C" void motorcade_yaml_1(std::string_view text, YamlAnswer& answer) noexcept;
 
 }  // namespace motorcade

@@ -20,7 +20,7 @@ Eigen::Matrix<double, 3, 4> matrix34(const CalibrationValues& v) {
 Eigen::Matrix3d squareMatrix(const CalibrationValues& v) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.numbers.data());
 }
-/// Fails for zeros, a reflection, and what else is no rotation.
+/// Builds a transform. Fails for zeros, a reflection, and any other matrix that is no rotation.
 SE3 rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m, const CalibrationValues& v,
           const CalibrationKeys& keys) {
   if (!isRotation(rotation)) keys.fail(v, "holds no rotation matrix");
@@ -63,7 +63,7 @@ void addMiddlebury(Calibration& calibration, CalibrationKeys& keys) {
   if (width && height) calibration.size[0] = ImageSize{imageSide_px(*width, 0, keys), imageSide_px(*height, 0, keys)};
 }
 
-/// In the order of `parametersOf`.
+/// Reads standard deviations in the order of `parametersOf`.
 CalibrationSigmas sigmasOf(const CalibrationValues& values, const CalibrationKeys& keys) {
   CalibrationSigmas sigmas;
   auto number = values.numbers.begin();
@@ -84,7 +84,7 @@ void requireFocalLength(double focal_px, const std::string& name) {
                      " px; no camera has less than 1 px or more than 1e6");
 }
 
-/// Of a rectified camera without skew.
+/// Throws unless P belongs to a rectified camera without skew.
 void requirePinhole(const Calibration::Projection& P, const std::string& name) {
   constexpr double kTolerance = 1e-6;
   const Eigen::Vector3d last_row(P(2, 0), P(2, 1), P(2, 2));
@@ -107,7 +107,8 @@ void requireProjections(const Calibration& calibration, std::size_t left) {
     throw InputError(calibration.file.string() + ": key " + (has_first ? second : first) + " is missing; " + images);
 }
 
-/// The middles of rectified images may lie in different columns: the disparities then have an offset, no more.
+/// Requires a rectified pair. The middles of its images may lie in different columns: the disparities then have an
+/// offset.
 void requireRectified(const Calibration::Projection& P_left, const Calibration::Projection& P_right,
                       const std::string& names) {
   const double tolerance_px = 1e-3 * P_left(0, 0), most_px = 0.25 * P_left(0, 0);

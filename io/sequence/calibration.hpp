@@ -14,7 +14,7 @@
 
 namespace motorcade {
 
-/// Which two of KITTI's four cameras a sequence uses: 0 and 1 are gray, 2 and 3 color.
+/// The pair of KITTI's four cameras that a sequence uses: 0 and 1 are gray, 2 and 3 color.
 enum class CameraPair { kGray, kColor };
 
 /// The content of a KITTI calibration, whatever its spelling. What the file does not give is empty.
@@ -35,9 +35,9 @@ struct Calibration {
   /// The column of the right image's principal point; that of the left one where both are the same [px].
   double rightMiddle_px(CameraPair pair) const;
   std::optional<ImageSize> rectifiedSize(CameraPair pair) const;
-  /// From the rectified left gray camera, in which labels and poses are given, to the pair's left camera.
+  /// Transform from the rectified left gray camera, the frame of labels and poses, to the pair's left camera.
   SE3 T_left_cam0(CameraPair pair) const;
-  /// From the inertial unit to the rectified left gray camera; empty when a part of the chain is missing.
+  /// Transform from the inertial unit to the rectified left gray camera. Empty when a part of the chain is missing.
   std::optional<SE3> T_cam0_imu() const;
 };
 

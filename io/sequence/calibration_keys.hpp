@@ -14,16 +14,17 @@ struct CalibrationValues {
   std::vector<double> numbers{};
 };
 
-/// Lines `KEY: NUMBERS` of a text: comments (# or //), commas and brackets count for nothing, and what other keys have
-/// is not looked at. Throws InputError that names file, line and key.
+/// Lines `KEY: NUMBERS` of a text. Comments (# or //), commas and brackets are skipped, and values of other keys are
+/// not read. Throws InputError that names file, line and key.
 class CalibrationKeys {
  public:
   explicit CalibrationKeys(const std::filesystem::path& file);
 
-  /// The first of several spellings that the file knows; its values must be `count` many. Null where it knows none.
+  /// The first of several spellings that the file has; it must have `count` values. Null where the file has none of
+  /// them.
   const CalibrationValues* find(const std::vector<std::string>& spellings, std::size_t count);
   bool has(const std::string& key) const { return lines_.contains(key); }
-  /// A guess at what a file without projections is, and how to mend it; empty where it has nothing that is known.
+  /// Advice for a file without projections: a guess at its form, and how to mend it. Empty for an unknown content.
   std::string advice() const;
 
   const std::filesystem::path& file() const { return file_; }

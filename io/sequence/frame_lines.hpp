@@ -10,8 +10,8 @@
 #include "core/timestamp.hpp"
 #include "io/sequence/sequence.hpp"
 
-/// Files with a line per image beside a sequence of which images are missing: a line may be there for each number of
-/// the complete numbering, for each left image, for each right one or for each pair.
+/// Files with a line per image beside a sequence that lacks images. They may have a line for each number of the
+/// complete numbering, for each left image, for each right one or for each pair.
 namespace motorcade {
 
 /// The place of a frame in the complete numbering of its images.
@@ -21,11 +21,11 @@ bool isComplete(const Sequence& sequence);
 
 /// The frame of each line, or -1 where there is none.
 using FramesOfLines = std::vector<std::int64_t>;
-/// All ways in which so many lines may belong to the frames, the likeliest first.
+/// All ways in which `lines` lines may belong to the frames, the likeliest first.
 std::vector<FramesOfLines> waysToRead(const Sequence& sequence, std::size_t lines);
 /// True if lines are assigned by the images' numbers: images are missing, or the lines begin before the first image.
 bool linesBelongToNumbers(const Sequence& sequence, std::size_t lines);
-/// The likeliest of them. Throws InputError that says what the file has and what is needed; `what` is in the plural.
+/// The likeliest of them. Throws InputError that says what the file has and what is needed; `what` is a plural noun.
 FramesOfLines framesOfLines(const Sequence& sequence, std::size_t lines, const std::filesystem::path& file,
                             const std::string& what);
 

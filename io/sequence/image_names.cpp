@@ -32,7 +32,7 @@ std::string withoutZeros(const std::string& digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
 }
 
-/// The kind that all names have but a few; empty where there is no such kind.
+/// The kind that all names but a few have; empty where there is none.
 std::optional<std::string> usualKind(const std::vector<NameParts>& names) {
   constexpr std::size_t kFewest = 3, kMany = 5;  // strays are at most one name in so many
   std::map<std::string, std::size_t> counts;
@@ -68,7 +68,7 @@ bool insertNumbers(ImagesByNumber& images, const NamedImages& side, std::size_t 
   return true;
 }
 
-/// The parts of a name that tell it from others of its side; all of it where that is not known.
+/// The parts of a name that distinguish it from others of its side; the whole name where these are not known.
 NameParts keyOf(const NameParts& name, const std::optional<std::set<std::size_t>>& varying) {
   if (!varying) return {joined(name)};
   NameParts key;
@@ -109,8 +109,8 @@ std::optional<KeyedImages> byTimes(const NamedImages& left, const NamedImages& r
   return keyed;
 }
 
-/// The digits that tell names of a side apart. Where both sides have as many parts, what one has but once may differ on
-/// the other.
+/// The digits that distinguish the names of each side. Where both sides have as many parts, digits that vary on either
+/// side count for both.
 std::pair<std::set<std::size_t>, std::set<std::size_t>> tellingDigits(const NamedImages& left,
                                                                       const NamedImages& right) {
   auto of_left = varyingDigits(left.names), of_right = varyingDigits(right.names);

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-/// Derives from the names of images which belong together, in what order, and, if the names are times, when they were
-/// taken.
+/// Derives from the names of images which of them are a pair and in what order pairs follow. If the names are times,
+/// they also give the capture times.
 namespace motorcade {
 
 /// A name without its extension, cut into text and digits in turn, text first: `cam0_0012` is cam, 0, _, 0012.
@@ -40,7 +40,7 @@ enum class NameKind {
   kTimes     // in nanoseconds
 };
 
-/// Both sides by what their names tell.
+/// Both sides, keyed by what their names tell.
 struct KeyedImages {
   NameKind kind = NameKind::kNames;
   ImagesByNumber left{}, right{};
@@ -48,7 +48,7 @@ struct KeyedImages {
 /// Throws InputError where two images of a side have the same number or time.
 KeyedImages keyedImages(const NamedImages& left, const NamedImages& right);
 
-/// The name that an image has whose partner, on the other side, is called so.
+/// The name of an image's missing partner on the other side, derived from the image's own.
 std::filesystem::path expectedImage(const NamedImages& side, const NamedImages& other,
                                     const std::filesystem::path& partner);
 

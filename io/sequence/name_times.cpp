@@ -11,8 +11,8 @@ namespace motorcade {
 namespace {
 
 constexpr std::int64_t kNameSecond_ns = 1'000'000'000, kNameMillisecond_ns = 1'000'000, kNameMicrosecond_ns = 1'000;
-/// Seconds since 1970 from 2004, below which numbers rather count from a round one, to 2112, which is also how far 63
-/// bits of nanoseconds allow differences.
+/// Range of seconds since 1970 that count as times. Before 2004 numbers rather count from a round one. Until 2112, 63
+/// bits of nanoseconds also hold differences.
 constexpr std::int64_t kEarliest_s = 1'100'000'000, kLatest_s = 4'500'000'000;
 
 bool isClockTime_s(std::int64_t value_s) { return value_s >= kEarliest_s && value_s < kLatest_s; }
@@ -48,8 +48,8 @@ std::optional<std::int64_t> dateDigits_ns(const std::string& digits) {
          fraction_ns(digits.substr(kWithoutFraction));
 }
 
-/// The digits of a date that begins with this part: in one, as a day and a time of day, or each number by itself; a
-/// fraction of the second may follow.
+/// The digits of a date that begins with this part: as one number, as a day and a time of day, or each number by
+/// itself. A fraction of the second may follow.
 std::string dateFrom(const NameParts& name, std::size_t part) {
   constexpr std::size_t kUpToSeconds = 14, kDay = 8, kYear = 4, kOthers = 2;
   std::string digits = name[part];
@@ -78,8 +78,8 @@ bool isOneWidth(const std::vector<NameParts>& names, std::size_t part) {
                              [&](const NameParts& name) { return name[part].size() == names.front()[part].size(); });
 }
 
-/// Whole seconds since 1970 and what follows them, a fraction or nanoseconds as a number of their own; after a point
-/// seconds of any clock that go on meanwhile.
+/// Seconds since 1970 and, as a second number, their fraction or nanoseconds. Two varying numbers around a decimal
+/// point may be seconds of any clock.
 std::optional<std::int64_t> secondsAndMore_ns(const NameParts& name, const std::vector<NameParts>& names) {
   constexpr std::size_t kMostDigits = 9;
   for (std::size_t part = 1; part + 2 < name.size(); part += 2) {
@@ -115,8 +115,8 @@ std::int64_t medianStep(const std::vector<std::int64_t>& values) {
   return *middle;
 }
 
-/// The unit of whole numbers, or 0 where they merely count. Clocks that began when a device was switched on have large
-/// steps, but no large numbers: from 4,000 on a step is no count of images.
+/// The unit of whole numbers, or 0 where they merely count. Clocks that start with the device have large steps, but no
+/// large numbers. A step of 4,000 or more is no count of images.
 std::int64_t unitOfNames_ns(const std::vector<std::int64_t>& values) {
   constexpr std::int64_t kNanoseconds = 2'500'000, kMicroseconds = 4'000, kMostMilliseconds = 2'500, kMostSeconds = 10;
   const auto clockIn = [&](std::int64_t unit_ns) {

@@ -38,7 +38,7 @@ Steps stepsOf(const std::vector<std::int64_t>& numbers) {
   return steps;
 }
 
-/// The name of an image with another number; the number that it has is the last of the digits that say so.
+/// The name of an image with another number. The number is the last of the digits that have its value.
 fs::path renumbered(const fs::path& image, std::int64_t from, std::int64_t to) {
   NameParts parts = partsOfName(image.stem().string());
   std::size_t part = parts.size() - 1 - parts.size() % 2;

@@ -42,7 +42,7 @@ std::int64_t mostApart(const KeyedImages& keyed) {
 
 std::int64_t pairsIn(const PairedImages& paired) { return std::ranges::count_if(paired.frames, &FramePaths::isPair); }
 
-/// Goes through both sides at once.
+/// Walks through both sides at once.
 class Zipper {
  public:
   Zipper(const KeyedImages& keyed, const NamedImages& left, const NamedImages& right)
@@ -79,7 +79,8 @@ class Zipper {
     apart_.push_back(std::abs(left->first - right->first));
     add(left->first, {.left = left->second, .right = right->second});
   }
-  /// Cameras that are triggered together tell times that differ by less than five milliseconds.
+  /// Adds a note if the two images of pairs were not taken together. Times of cameras that are triggered together
+  /// differ by less than five milliseconds.
   void tellApart() {
     constexpr std::int64_t kTogether_ns = 5'000'000;
     const auto middle = apart_.begin() + std::ssize(apart_) / 2;

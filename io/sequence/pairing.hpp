@@ -8,7 +8,7 @@
 #include "io/sequence/image_names.hpp"
 #include "io/sequence/sequence.hpp"
 
-/// Images of two sides come together in pairs.
+/// Pairs the images of two sides.
 namespace motorcade {
 
 struct PairedImages {
@@ -33,7 +33,7 @@ void leaveOutEnds(PairedImages& paired);
 /// Says which images are missing; nothing where none is.
 void tellMissing(PairedImages& paired);
 
-/// Up to three of them, with their folders, and how many there are more.
+/// The names of up to three of them, with their folders, and the number of the others.
 std::string namesOf(const std::vector<std::filesystem::path>& images);
 
 /// The most frequent difference of numbers that follow each other; 1 where there are none.

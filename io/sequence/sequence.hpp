@@ -19,7 +19,7 @@ struct Rectification;
 
 enum class StereoSide { kLeft, kRight };
 
-/// The images of a frame. One that is missing is named as it should be called.
+/// The images of a frame. A missing one has the name that it should have.
 struct FramePaths {
   std::filesystem::path left, right;
   bool left_missing = false, right_missing = false;
@@ -59,7 +59,7 @@ struct GivenCameras {
   std::string calibration{};  // FILE, or two as LEFT,RIGHT
   std::string bayer{};        // the pattern of images that are a color sensor's mosaic
 
-  /// No word on where the cameras look.
+  /// True when nothing describes the cameras' geometry.
   bool empty() const { return camera.empty() && calibration.empty(); }
 };
 
@@ -75,8 +75,8 @@ inline constexpr const char* kStandardInput = "-";
 /// The layout of a drive whose pairs are in a bag.
 inline constexpr const char* kBagLayout = "bag";
 
-/// A recorded drive: where its images are, when they were taken, with what camera, and what is known of the truth. Of a
-/// pipe (`kStandardInput`) and a bag, which bring their pairs one by one, there are neither frames nor stamps.
+/// A recorded drive: its images, their capture times, its camera, and its ground truth. A pipe (`kStandardInput`) and a
+/// bag bring their pairs one by one, so that these have neither frames nor stamps.
 struct Sequence {
   /// Files with ground truth; an empty path where there is none.
   struct Truth {

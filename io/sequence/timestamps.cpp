@@ -15,7 +15,7 @@ namespace motorcade {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// Until 2112, so that also the time between any two fits into 63 bits of nanoseconds.
+/// Latest time, in 2112. Differences of any two times then fit into 63 bits of nanoseconds, too.
 constexpr std::int64_t kMaxTime_s = 4'500'000'000;
 
 bool isDigits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }

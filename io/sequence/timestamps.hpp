@@ -17,7 +17,7 @@ struct Times {
 };
 
 /// Reads one time per line: seconds (`12.5`, `1.25e+01`) or a date with a time of day (`2011-09-26 13:10:51.175862102`,
-/// taken as UTC), exact to the nanosecond. Numbers that would be images seconds apart throughout are milliseconds,
+/// taken as UTC), exact to the nanosecond. If images would be seconds apart throughout, the numbers are milliseconds,
 /// microseconds or nanoseconds, by the unit in which a camera might have taken them. `#` begins a comment. Times must
 /// increase. Throws InputError naming file and line.
 Times readTimes(const std::filesystem::path& file);
@@ -30,7 +30,7 @@ Timestamp readTime(const std::filesystem::path& file, const TextLine& line);
 /// The times alone.
 std::vector<Timestamp> readTimestamps(const std::filesystem::path& file);
 
-/// The time of the frame with this number where frames come at a rate.
+/// The time of a frame by its number at a constant rate.
 Timestamp stampAtRate(std::int64_t number, double rate_hz);
 
 /// The name of a unit of time, in the plural.

@@ -15,8 +15,8 @@ enum class StereoPacking {
   kOverUnder,   // left above right
 };
 
-/// Size of either image. Throws InputError, which begins with `name`, where the picture cannot be halved, and where an
-/// image may not have such a size.
+/// Size of either image. Throws InputError, which begins with `name`, where the picture cannot be halved or its half
+/// has an impossible size.
 ImageSize unpackedSize(const Y4mHeader& header, StereoPacking packing, const std::string& name);
 
 struct ImagePair {

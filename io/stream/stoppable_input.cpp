@@ -20,7 +20,7 @@ namespace {
   throw InputError(name + ": cannot be read: " + std::strerror(errno));
 }
 
-/// Checked before any other descriptor is made, which would get the number of one that is closed.
+/// Checked before any other descriptor is opened, which would get the number of a closed one.
 int readable(int descriptor, const std::string& name) {
   const int flags = ::fcntl(descriptor, F_GETFL);
   if (flags < 0 || (flags & O_ACCMODE) == O_WRONLY) throw InputError(name + ": is closed; pipe a stream into it");

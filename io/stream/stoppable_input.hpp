@@ -14,13 +14,13 @@ namespace motorcade {
 /// Reads a descriptor that may stay silent, as a pipe does. One thread reads; `stop`, from any thread, ends its wait.
 class StoppableInput {
  public:
-  /// The descriptor stays the caller's. Throws InputError where it is none that can be read. `name` is for messages.
+  /// The caller keeps the descriptor. Throws InputError if it cannot be read. `name` is for messages.
   StoppableInput(int descriptor, std::string name);
 
-  /// Fills `bytes`, and gives how many came: fewer at the end and after `stop`. Throws InputError.
+  /// Fills `bytes` and returns their number, which is smaller at the end and after `stop`. Throws InputError.
   std::size_t read(std::span<std::uint8_t> bytes);
-  /// Reads up to the next end of a line, and with it; without one at the end, after `stop`, and where `most` bytes have
-  /// none. Throws InputError.
+  /// Reads a line with its end. The end is missing at the end of the input, after `stop`, and where the first `most`
+  /// bytes have none. Throws InputError.
   std::string readLine(std::size_t most);
 
   void stop();

@@ -20,8 +20,8 @@ constexpr std::array kLayouts{ChromaLayout{"mono", 1, 1, 0}, ChromaLayout{"420",
                               ChromaLayout{"422", 2, 1, 2},  ChromaLayout{"444", 1, 1, 2},
                               ChromaLayout{"411", 4, 1, 2},  ChromaLayout{"444alpha", 1, 1, 3}};
 
-/// A name of the color space is that of its layout, and behind it where the chroma samples lie (`jpeg`), or the bits of
-/// a sample (`p10`; of `mono`, `10` alone).
+/// A name of a color space begins with that of its layout. It may end with the position of the chroma samples (`jpeg`),
+/// or the bits of a sample (`p10`; of `mono`, `10` alone).
 struct ColorSpace {
   const ChromaLayout* layout = nullptr;
   int bits = 8;

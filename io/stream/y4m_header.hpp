@@ -22,7 +22,7 @@ struct Y4mHeader {
   std::size_t chromaBytes() const { return sampleBytes() * chroma_samples; }
 };
 
-/// Reads the line, without its end. Sizes are such that no product of them overflows. Throws InputError, which begins
+/// Parses the line, without its end. Sizes are such that no product of them overflows. Throws InputError, which begins
 /// with `name`.
 Y4mHeader parseY4mHeader(std::string_view line, const std::string& name);
 

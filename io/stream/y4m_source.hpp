@@ -19,8 +19,8 @@
 namespace motorcade {
 
 /// The pairs of a YUV4MPEG2 stream, read and rectified on a thread of its own as they come. Either no pair is lost, and
-/// the stream's writer waits where pairs are taken too slowly; or the writer never waits longer than a pair takes to be
-/// rectified, and of the pairs that came the newest is taken.
+/// the stream's writer waits where pairs are taken too slowly. Or the writer waits at most as long as a pair takes to
+/// be rectified, and the newest pair is taken.
 class Y4mSource final : public PairSource {
  public:
   struct Params {

@@ -19,14 +19,14 @@ class Y4mStream {
     kStopped,
   };
 
-  /// Waits for the stream's header. The descriptor stays the caller's; `name` is for messages. Throws InputError.
+  /// Waits for the stream's header. The caller keeps the descriptor; `name` is for messages. Throws InputError.
   Y4mStream(int descriptor, const std::string& name);
 
   const Y4mHeader& header() const { return header_; }
   const std::string& name() const { return input_.name(); }
 
   /// Waits for the next frame and fills `luma`, which is made as large as the plane. Throws InputError where no frame
-  /// begins that should.
+  /// begins although one should.
   Next next(std::vector<std::uint8_t>& luma);
   void stop() { input_.stop(); }
 

@@ -92,8 +92,8 @@ std::vector<SE3> interpolated(const std::vector<SE3>& poses, const Sequence::Tru
   return result;
 }
 
-/// T_world_cam = C B P_0^-1 P_k B^-1 C^-1, with B the left gray camera from the inertial unit and C the pair's left
-/// camera from it.
+/// Computes T_world_cam = C B P_0^-1 P_k B^-1 C^-1. B takes the inertial unit to the left gray camera, C takes that
+/// camera to the pair's left one.
 std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes times) {
   const auto T_cam0_imu = sequence.calibration.T_cam0_imu();
   if (sequence.truth.oxts.empty() || !T_cam0_imu) return std::nullopt;
@@ -122,7 +122,7 @@ std::optional<CameraTruth> truthFromOxts(const Sequence& sequence, OxtsTimes tim
   return truth;
 }
 
-/// The known poses' truth of the frames between the first and the last of them, in the world of the first such frame.
+/// Interpolates known poses at the frames between the first and the last of them, in the world of the first such frame.
 CameraTruth truthAtFrames(const Sequence& sequence, const StampedPoses& known, const fs::path& file,
                           const SE3& T_posed_cam) {
   CameraTruth truth{.T_world_cam = {}, .source = file.filename().string()};
@@ -192,8 +192,8 @@ PoseByFrameAndId readObjectPoses(const fs::path& file) {
   return poses;
 }
 
-/// The labels with the numbers of the sequence's frames. Their own count the lines of the poses, where these are there,
-/// else the complete numbering of the images.
+/// Labels with the numbers of the sequence's frames. The file counts the lines of the poses, where these exist, else
+/// the complete numbering of the images.
 std::vector<Label> labelsOfFrames(const Sequence& sequence) {
   std::vector<Label> labels = readLabels(sequence.truth.labels);
   if (sequence.frames.empty()) return labels;

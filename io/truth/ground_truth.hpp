@@ -11,7 +11,7 @@
 /// The truth of a sequence, converted to our conventions: `world` is the first left camera of the images' pair.
 namespace motorcade {
 
-/// How oxts packets and images are brought together. The two are up to 5 ms apart.
+/// The rule by which oxts packets are assigned to images. The two are up to 5 ms apart.
 enum class OxtsTimes {
   kInterpolated,    // packets interpolated at the images' times, where both time files are there
   kUninterpolated,  // packet k for image k, as published evaluations have it
@@ -33,8 +33,8 @@ struct CameraTruth {
   std::string source;            // for reports: which file, in what form
   std::int64_t first_frame = 0;  // that is known; those before it have the same pose
 };
-/// From `poses.txt`; where that is missing, from poses with times or numbers of their own, or else from oxts, as where
-/// the uninterpolated form is asked for. Velocities are those of oxts alone. Empty without any.
+/// Reads the tables of Virtual KITTI, `poses.txt`, poses with times or numbers, or oxts: the first that is there.
+/// `kUninterpolated` prefers oxts; `kVelocities` uses oxts alone. Empty when nothing is there.
 std::optional<CameraTruth> readCameraTruth(const Sequence& sequence, OxtsTimes times = OxtsTimes::kInterpolated);
 
 /// A labeled object in one frame.
@@ -60,7 +60,8 @@ struct ObjectTruths {
   std::vector<Ignored> ignored;
   std::string source;
 };
-/// From the labels; where `object_poses.txt` is there too, with the poses it gives. Empty when there are no labels.
+/// Reads the tables of Virtual KITTI or the labels, with the poses of `object_poses.txt` where it has them. Empty when
+/// neither is there.
 std::optional<ObjectTruths> readObjectTruths(const Sequence& sequence, const CameraTruth& camera);
 
 }  // namespace motorcade

@@ -24,12 +24,12 @@ struct Label {
   bool dontCare() const { return type == "DontCare"; }
 };
 
-/// Reads a label file, or a result file, whose scores are passed over; throws InputError naming the line. Its order is
-/// kept.
+/// Reads a label file, or a result file, whose scores are passed over. Throws InputError naming the line. Keeps the
+/// file's order.
 std::vector<Label> readLabels(const std::filesystem::path& file);
 
-/// A line of a KITTI tracking result file, without its end: the 17 columns of a label and a score. What results are not
-/// asked for, truncation and occlusion, is -1; alpha, under which the camera sees the object, follows from the rest.
+/// A line of a KITTI tracking result file, without its end: the 17 columns of a label and a score. Truncation and
+/// occlusion, which results do not need, are -1. The observation angle alpha is computed from the rest.
 std::string resultLine(const Label& label, double score);
 
 }  // namespace motorcade

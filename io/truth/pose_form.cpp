@@ -17,7 +17,7 @@ std::size_t fieldsIn(const std::filesystem::path& file, const TextLine& line) {
   return count;
 }
 
-/// A word is none of the letters of nan and inf alone.
+/// True for a line that begins with a word. The letters of nan and inf alone are no word.
 bool beginsWithAWord(const TextLine& line) {
   const std::string text = trimmed(line.text), word = text.substr(0, text.find_first_of(" \t,"));
   constexpr std::string_view kOfNumbers = "nNaAiIfF";
@@ -25,7 +25,7 @@ bool beginsWithAWord(const TextLine& line) {
          word.find_first_not_of(kOfNumbers) != std::string::npos;
 }
 
-/// Guesses from the number of fields which other form the file has; adds how to convert it where possible.
+/// Guesses another form from the number of fields, and adds how to convert it where possible.
 std::string guessAt(std::size_t fields) {
   switch (fields) {
     case 3:

@@ -18,7 +18,7 @@ enum class PoseForm {
 /// Lines that hold data: without comments, which `#` begins, and without a table's header of words.
 std::vector<TextLine> readPoseLines(const std::filesystem::path& file);
 
-/// Tells by the first line. Throws InputError saying what the file seems to be and what is read.
+/// The form by the first line. Throws InputError saying what the file seems to be and which forms are read.
 PoseForm poseFormOf(const std::filesystem::path& file, const std::vector<TextLine>& lines);
 
 /// The character between the fields of a line.

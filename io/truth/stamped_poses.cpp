@@ -47,7 +47,8 @@ bool overlapInTime(const std::vector<Timestamp>& a, const std::vector<Timestamp>
   return !a.empty() && !b.empty() && a.front() <= b.back() && b.front() <= a.back();
 }
 
-/// True when there is a time for each image, none farther off than that once both begin `offset_s` apart.
+/// True when there is a time for each image, and none is farther from its image's than that once both begin `offset_s`
+/// apart.
 bool fitImages(const std::vector<Timestamp>& times, const std::vector<Timestamp>& images, double offset_s,
                double most_s) {
   if (times.size() != images.size() || times.empty()) return false;
@@ -56,8 +57,8 @@ bool fitImages(const std::vector<Timestamp>& times, const std::vector<Timestamp>
   return true;
 }
 
-/// True when two clocks tell of the same moments: as printed with few digits, or but for a constant and half an
-/// interval where they have no time in common.
+/// True when two lists have the same moments: up to printed digits, or up to a constant and half an interval where they
+/// have no time in common.
 bool tellOfImages(const std::vector<Timestamp>& times, const std::vector<Timestamp>& images) {
   constexpr double kPrinted_s = 1e-3;
   if (overlapInTime(times, images)) return fitImages(times, images, 0, kPrinted_s);

@@ -23,14 +23,13 @@ StampedPoses readStampedPoses(const std::filesystem::path& file);
 /// nanoseconds, as ORB-SLAM3 writes them. Throws InputError.
 StampedPoses readTumPoses(const std::filesystem::path& file);
 
-/// KITTI-360's: the number of an image, then the rows of a pose; those of images that the sequence has, at the times
-/// it gives them. Throws InputError.
+/// KITTI-360's poses: the number of an image, then the rows of a pose. Takes those of images that the sequence has, at
+/// these images' times. Throws InputError.
 StampedPoses readNumberedPoses(const std::filesystem::path& file, const Sequence& sequence);
 
-/// The same of a file in any of these forms, at times of the images' clock; empty where its lines are poses of the
-/// frames, one for each. Times of another clock are brought to the images' where there is a pose for each image, and
-/// either the images' own times are not known, or they have the same intervals. Throws InputError where the clocks
-/// cannot be brought together.
+/// Poses of a file in any of these forms, at times of the images' clock. Empty where its lines are poses of the frames,
+/// one for each. Times of another clock are converted where there is a pose for each image, and either the images' own
+/// times are not known, or they have the same intervals. Throws InputError where the clocks cannot be related.
 std::optional<StampedPoses> readTimedPoses(const std::filesystem::path& file, const Sequence& sequence);
 
 }  // namespace motorcade

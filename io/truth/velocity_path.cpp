@@ -11,8 +11,8 @@
 namespace motorcade {
 namespace {
 
-/// The packet's velocity on axes of the east, the north and up. KITTI's packets tell it along axes that only turn with
-/// the yaw (vf and vl are parallel to the earth's surface), not with pitch and roll.
+/// The packet's velocity along east, north and up. KITTI's packets give it along axes that only turn with the yaw (vf
+/// and vl are parallel to the earth's surface), not with pitch and roll.
 Eigen::Vector3d velocityOf(const OxtsPacket& packet) {
   return Eigen::AngleAxisd(packet.yaw_rad, Eigen::Vector3d::UnitZ()) * *packet.velocity_mps;
 }

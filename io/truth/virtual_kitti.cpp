@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kLeftCamera = 0, kRightCamera = 1;  // cameraID
 
-/// The lines of a table behind its header, which begins with that word.
+/// The lines of a table behind its header, which begins with `first_column`.
 std::vector<TextLine> tableLines(const fs::path& file, std::string_view first_column) {
   auto lines = readLines(file);
   if (lines.empty() || !lines.front().text.starts_with(first_column))
@@ -118,7 +118,7 @@ std::map<std::int64_t, std::string> readTypes(const fs::path& file) {
   return types;
 }
 
-/// The area that a cuboid covers in the image plane: each ray that meets it passes two of its faces.
+/// The area that a cuboid covers in the image plane. Each ray that meets it passes two of its faces.
 std::optional<double> projectedArea_px2(const ObjectTruth& object, const StereoCamera& camera) {
   constexpr double kNear_m = 0.2;
   std::array<Eigen::Vector2d, 8> corners;
@@ -139,9 +139,9 @@ std::optional<double> projectedArea_px2(const ObjectTruth& object, const StereoC
   return twice_px2 / 2;
 }
 
-/// KITTI's levels from the share of the object's pixels that can be seen. The table's occupancy_ratio is the share of
-/// the box that its pixels fill, which is no measure of that: a free car fills .55 to .85. At the image's edge, where a
-/// cuboid's projection is boundless, the box has to do.
+/// KITTI's levels from the visible share of the object's pixels. The table's occupancy_ratio does not measure that: it
+/// is the share of the box that its pixels fill, .55 to .85 for a free car. At the image's edge, where a cuboid's
+/// projection is unbounded, the box is used instead.
 int occlusionOf(const ObjectTruth& object, const SeenBox& seen, const StereoCamera& camera) {
   constexpr double kVehicleInCuboid = 0.75;  // how much of a cuboid's projection a vehicle covers
   constexpr double kAtEdge = 0.25, kVisible = 0.8, kPartly = 0.4;

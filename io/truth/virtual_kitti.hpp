@@ -13,8 +13,8 @@
 /// has a header, then a line for each frame, camera and object. Functions throw InputError naming file and line.
 namespace motorcade {
 
-/// The pair of Camera_0 and Camera_1, without a size. The baseline is the one that the data set states where the
-/// extrinsics, with their seven digits, agree with it.
+/// The pair of Camera_0 and Camera_1, without a size. The baseline is the data set's stated one if the extrinsics, with
+/// their seven digits, agree with it.
 StereoCamera readVirtualKittiCamera(const std::filesystem::path& tables);
 
 /// Poses of Camera_0 by the numbers of the frames, in the world of the data set.

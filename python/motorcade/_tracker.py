@@ -62,8 +62,8 @@ class Tracker:
         log: Log | None = None,
         on_result: Callable[[Result], object] | None = None,
     ) -> None:
-        # The tracker's threads hold callbacks weakly, so that the garbage collector sees cycles through them: they are
-        # kept here, as long as a thread may be in one.
+        # The tracker's threads hold callbacks weakly, so that the garbage collector sees cycles through them. They are
+        # kept here as long as a thread may be in one.
         self._callbacks: list[Callable[..., object]] = []
         self._native = _motorcade.Tracker(
             camera,

@@ -7,7 +7,7 @@ namespace {
 
 thread_local int callbacks_under_way = 0;
 
-/// A thread's stay in a callback, the release of what the callback held included.
+/// Counts a thread as in a callback, also while it releases what the callback held.
 class Stay {
  public:
   Stay() { ++callbacks_under_way; }

@@ -8,16 +8,17 @@
 namespace motorcade::python {
 
 /// A Python callable that a tracker's threads call. It is held weakly, so that Python's garbage collector can see what
-/// it refers to: the tracker's Python object holds it, and once that is gone, a call does nothing.
+/// it refers to. The tracker's Python object holds it; once that is gone, a call does nothing.
 class Callback {
  public:
-  /// Of a callable that can be held weakly. The GIL is held.
+  /// Takes a callable that can be held weakly. The caller holds the GIL.
   explicit Callback(const pybind11::object& callable);
 
-  /// From any thread, without the GIL, which is held while `arguments` makes them. What the callable raises is printed.
+  /// Calls the callable from any thread, which must not hold the GIL; `arguments` runs with the GIL. Prints what the
+  /// callable raises.
   void operator()(const std::function<pybind11::tuple()>& arguments) const;
 
-  /// Whether the calling thread is in a callback: such a thread must not wait for a tracker's end.
+  /// True while the calling thread is in a callback. Such a thread must not wait for a tracker's end.
   static bool isUnderWay();
 
  private:

@@ -26,7 +26,7 @@ void read(const py::object& object, const char* key, const std::string& name, Va
   value = valueOf<Value>(object.attr(key), field);
 }
 
-/// As doubles, row by row.
+/// Converts to an array of doubles, row by row.
 py::array_t<double> arrayOf(const py::object& object, const std::string& field) {
   auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
   if (!numbers) throw py::type_error(field + ": is no array of numbers");
@@ -95,7 +95,7 @@ Camera::Sigmas sigmasOf(const py::object& object) {
   return sigmas;
 }
 
-/// Row by row, of the images' size.
+/// The mask row by row, in the images' size.
 std::vector<std::uint8_t> maskOf(const py::object& object, const Camera& camera) {
   const auto mask = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(object);
   if (!mask) throw py::type_error("camera.ignored: is no array of numbers");

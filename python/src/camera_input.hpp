@@ -6,7 +6,7 @@
 
 namespace motorcade::python {
 
-/// From the package's Camera to the library's, and back. Throws TypeError or Error, which name the field.
+/// Converts the package's Camera to the library's, and back. Throws TypeError or Error, which name the field.
 Camera cameraOf(const pybind11::object& camera);
 pybind11::object toPython(const Camera& camera);
 

@@ -19,7 +19,7 @@ py::buffer_info bufferOf(const py::object& image, const std::string& name) {
   return py::reinterpret_borrow<py::buffer>(image).request();
 }
 
-/// As numpy names it, else as the buffer does.
+/// Names the element type as numpy does, or else by the buffer's format.
 std::string elementName(const py::object& image, const py::buffer_info& buffer) {
   if (py::hasattr(image, "dtype")) return py::str(image.attr("dtype"));
   return "the buffer format '" + buffer.format + "'";
@@ -51,7 +51,7 @@ std::string shapeText(const py::buffer_info& buffer) {
   return py::str(shape);
 }
 
-/// Rows may lie apart; the pixels of a row may not, and rows may not overlap.
+/// Checks the strides. Rows may lie apart, but must not overlap; the pixels of a row must be contiguous.
 void requireStrides(const std::string& name, const py::buffer_info& buffer) {
   const bool colors = buffer.ndim == 3;
   const py::ssize_t pixel_bytes = colors ? 3 : buffer.itemsize;
@@ -65,7 +65,7 @@ void requireStrides(const std::string& name, const py::buffer_info& buffer) {
                           "numpy.ascontiguousarray(image)");
 }
 
-/// Of a side that no camera has, the largest int: the library rejects it.
+/// Clamps a side to the largest int. No camera has a side that long, so the library rejects it.
 int sideOf_px(py::ssize_t pixels) { return static_cast<int>(std::min<py::ssize_t>(pixels, INT_MAX)); }
 
 }  // namespace

@@ -12,12 +12,12 @@ namespace motorcade::python {
 /// The order of colors by its name, "rgb" or "bgr". Throws Error.
 Pair::Format colorFormatOf(const std::string& name);
 
-/// An image of Python's, by the buffer protocol, as the library takes it: without a copy. Holds on to the buffer while
-/// it lives; made and destroyed with the GIL.
+/// An image of Python's in the library's form, taken by the buffer protocol without a copy. Holds the buffer while it
+/// lives; created and destroyed with the GIL.
 class ImageInput {
  public:
-  /// None is an image without pixels. Without `color_format` it holds labels, and no colors. Throws TypeError or
-  /// ValueError, which call the image `name` and tell how to mend it.
+  /// None is an image without pixels. Without `color_format` the image holds labels instead of colors. Throws TypeError
+  /// or ValueError, which call the image `name` and say how to mend it.
   ImageInput(const pybind11::object& image, const std::string& name, std::optional<Pair::Format> color_format);
   const Pair::Image& view() const { return view_; }
 

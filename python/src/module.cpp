@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace motorcade::python {
 namespace {
 
-/// As the package's own Error, whose text puts the field before the message as `what` does.
+/// Raises the package's own Error. Its text puts the field before the message, as `what` does.
 void raise(const Error& error) {
   const std::string text = error.what();
   const auto type = py::module_::import("motorcade._error").attr("Error");

@@ -21,7 +21,7 @@ inline constexpr const char* kWanted<std::vector<int>> = "a sequence of integers
 template <>
 inline constexpr const char* kWanted<std::string> = "a str";
 
-/// The value of a Python object. Throws TypeError, which calls it `field` and tells what is wanted.
+/// The value of a Python object. Throws TypeError, which calls it `field` and says what is wanted.
 template <class Value>
 Value valueOf(const pybind11::handle& object, const std::string& field) {
   try {

@@ -15,7 +15,7 @@ namespace py = pybind11;
 namespace motorcade::python {
 namespace {
 
-/// A recorded drive as Python holds it: for any thread, and its pairs own their pixels.
+/// A recorded drive as Python holds it. Any thread may use it, and its pairs own their pixels.
 class RecordingBinding {
  public:
   explicit RecordingBinding(const std::string& folder) : recording_(folder) {}

@@ -55,7 +55,7 @@ py::object squareOf(const std::optional<std::array<double, 36>>& values) {
   return values ? py::object(squareOf(*values)) : py::none();
 }
 
-/// With the row 0 0 0 1, so that transforms can be multiplied and inverted.
+/// Adds the row 0 0 0 1, so that transforms can be multiplied and inverted.
 py::array_t<double> transformOf(const std::array<double, 12>& rows) {
   std::array<double, 16> whole{};
   std::copy(rows.begin(), rows.end(), whole.begin());

@@ -6,7 +6,7 @@
 
 namespace motorcade::python {
 
-/// As the package's dataclasses. The GIL is held.
+/// Converts to the package's dataclasses. The caller holds the GIL.
 pybind11::object toPython(const Result& result);
 pybind11::object toPython(const Tracker::Push& push);
 pybind11::object toPython(const Tracker::Counts& counts);

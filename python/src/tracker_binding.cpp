@@ -62,7 +62,7 @@ struct TrackerBinding::Running {
   Tracker tracker;
 };
 
-/// A call that may be under way without the GIL: the tracker outlives it.
+/// A call that may run without the GIL. The tracker outlives it.
 class TrackerBinding::Visit {
  public:
   explicit Visit(Running& running) : running_(running) {
@@ -87,7 +87,7 @@ TrackerBinding::TrackerBinding(const py::object& camera, const py::object& log, 
   running_ = std::make_unique<Running>(described, chosen);
 }
 
-// What might throw is a lock that cannot be taken: the program ends.
+// If a lock cannot be taken, this throws, and the program ends.
 TrackerBinding::~TrackerBinding() { stop(); }  // NOLINT(bugprone-exception-escape)
 
 Tracker::Push TrackerBinding::push(const Pair& pair) {
@@ -200,7 +200,7 @@ void TrackerBinding::end(std::unique_ptr<Running> running) {
   while (running->visits > 0) std::this_thread::sleep_for(kPause);
 }
 
-/// Without a thread for it, the tracker stays until the process ends.
+/// Ends the tracker on a thread of its own. If none can be started, the tracker stays until the process ends.
 void TrackerBinding::endBehindTheScenes(std::unique_ptr<Running> running) {
   Running* const leaving = running.release();
   ++trackers_leaving;
@@ -222,7 +222,8 @@ void TrackerBinding::waitForLeaving() {
 
 namespace {
 
-/// Left and right image and the instance labels. What Python holds is held until the library has copied them.
+/// Pushes the left and right image and the instance labels. Python's buffers are held until the library has copied
+/// them.
 py::object push(TrackerBinding& tracker, const py::tuple& images, const py::object& stamp_ns, const py::object& frame,
                 const std::string& format) {
   const auto color_format = colorFormatOf(format);

@@ -11,9 +11,8 @@
 
 namespace motorcade::python {
 
-/// A tracker as Python holds it. Every call is made with the GIL, which is free while the library works; a Ctrl-C ends
-/// a wait. It can be stopped before it goes, and goes safely wherever the garbage collector runs: within a callback,
-/// too.
+/// A tracker as Python holds it. Every call is made with the GIL, which is released while the library works. Ctrl-C
+/// ends a wait. The garbage collector may destroy it anywhere, also within a callback.
 class TrackerBinding {
  public:
   /// `log` is None, or can be held weakly.
@@ -25,23 +24,23 @@ class TrackerBinding {
   Tracker::Push push(const Pair& pair);
   Tracker::Push pushMotion(const VehicleMotion& motion);
   std::optional<Result> poll();
-  /// For ever without a timeout.
+  /// Waits forever if no timeout is given.
   std::optional<Result> wait(std::optional<double> timeout_s);
   bool done() const;
   /// `take` is None, or can be held weakly.
   void handTo(const pybind11::object& take);
   void handFinalsTo(const pybind11::object& take);
-  /// Whether results go to a callback.
+  /// True when results go to a callback.
   bool handsOn() const;
   Tracker::Counts counts() const;
   void close();
   void reset();
 
-  /// Abandons what is in flight. Calls of other threads have come back, and the tracker's threads have ended, unless
-  /// this one is in a callback: then a thread of its own sees to that.
+  /// Abandons what is in flight. On return, calls of other threads have come back and the tracker's threads have ended.
+  /// Within a callback it returns at once, and a thread of its own ends the tracker.
   void stop();
 
-  /// Returns when all threads that see to the end of trackers are through.
+  /// Returns when every thread that ends a tracker is through.
   static void waitForLeaving();
 
  private:

@@ -25,7 +25,7 @@ bool isAddress(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &address) == 1;
 }
 
-/// Whether one of this machine's interfaces has that address.
+/// True for the address of one of this machine's interfaces.
 bool isOwnAddress(const std::string& text) {
   ifaddrs* interfaces = nullptr;
   in_addr wanted{};
@@ -40,7 +40,7 @@ bool isOwnAddress(const std::string& text) {
   return false;
 }
 
-/// As the attribute of an element: no character that means something there.
+/// The attribute of an XML element that names the interface. It has no character with a meaning in XML.
 std::string attributeOf(const std::string& interface) {
   if (isOwnAddress(interface)) return fmt::format("address=\"{}\"", interface);
   const auto plain = [](char c) {
@@ -72,10 +72,11 @@ std::string ddsConfiguration(const DdsPlace& place) {
                                                "<Peers><Peer address=\"{}\"/></Peers></Discovery>",
                                                kLoopback)
                                          : "";
-  // What is not acknowledged yet is bounded by the writers' history. By default they wait from 30 kB on, which is one
-  // array of markers, and for a second when they are deleted; and ask for acknowledgments every 100 ms, in which a
-  // replay at full speed fills the history. A pair of images comes at once, faster than it is read from the socket: as
-  // much of the buffer as the system allows (net.core.rmem_max). No image is larger than the largest sample.
+  // The writers' histories bound what is not acknowledged yet. By default writers wait from 30 kB on, which is one
+  // array of markers, and for a second when they are deleted. They also ask for acknowledgments only every 100 ms, in
+  // which a replay at full speed fills the history. A pair of images comes at once, faster than it is read from the
+  // socket. The buffer is therefore as large as the system allows (net.core.rmem_max). No image is larger than the
+  // largest sample.
   return "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface " + interface + "/></Interfaces>" +
          multicast + "</General>" + discovery +
          "<Internal><Watermarks><WhcAdaptive>false</WhcAdaptive><WhcHigh>64 MB</WhcHigh></Watermarks>"

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Where DDS is spoken.
+/// The domain and the interface on which DDS communicates.
 struct DdsPlace {
   static constexpr int kMostDomain = 232;  // its ports would be beyond 65535
 
@@ -12,14 +12,14 @@ struct DdsPlace {
   std::string interface {};  // IPv4 address or name of the one interface; empty: loopback
 };
 
-/// Cyclone DDS' configuration for that place alone, whatever the environment says. On loopback, which has no multicast,
-/// participants are sought at the ports of the first 33, as ROS 2 does where discovery is for the machine alone; on
-/// another interface by multicast. Throws UsageError.
+/// Cyclone DDS' configuration for that place alone, whatever the environment says. Loopback has no multicast:
+/// participants are sought at the ports of the first 33, as ROS 2 does where discovery is for the machine alone. Other
+/// interfaces use multicast. Throws UsageError.
 std::string ddsConfiguration(const DdsPlace& place);
 
 bool isLoopback(const DdsPlace& place);
 
-/// For messages: "domain 0 on 127.0.0.1".
+/// Text for messages: "domain 0 on 127.0.0.1".
 std::string textOf(const DdsPlace& place);
 
 }  // namespace motorcade

@@ -11,10 +11,10 @@
 /// Handles of Cyclone DDS that end with their scope.
 namespace motorcade {
 
-/// Ends what was made in it, too.
+/// A handle that also ends the entities that were made in it.
 class DdsEntity {
  public:
-  /// Throws OutputError where DDS refused to make it.
+  /// Throws OutputError if DDS refused to create it.
   DdsEntity(dds_entity_t entity, const std::string& what) : entity_(entity) {
     if (entity < 0) throw OutputError(fmt::format("{}: DDS says: {}", what, dds_strretcode(entity)));
   }

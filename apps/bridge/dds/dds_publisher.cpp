@@ -72,7 +72,7 @@ class Writer {
       if (++unacknowledged_ > kHistory) ++counts_.overtaken;
     }
   }
-  /// Waits until every subscriber acknowledged all.
+  /// Waits until every subscriber has acknowledged all messages.
   void settle(std::chrono::nanoseconds patience) const { dds_wait_for_acks(writer_.get(), patience.count()); }
 
   int subscribers() const {
@@ -103,7 +103,7 @@ class Writer {
 
 }  // namespace
 
-/// Made and ended in the order of its members.
+/// The members are created and ended in their order.
 struct DdsPublisher::Impl {
   Impl(const DdsPlace& place, const std::set<Topic>& topics)
       : domain(dds_create_domain(static_cast<dds_domainid_t>(place.domain), ddsConfiguration(place).c_str()),

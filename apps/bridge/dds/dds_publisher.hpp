@@ -16,9 +16,9 @@
 
 namespace motorcade {
 
-/// Publishes messages as ROS 2 does by default: reliable, volatile, the last ten kept. Neither an absent nor a slow nor
-/// a stopped subscriber holds it up for more than ten milliseconds a message: it then misses messages, which is
-/// counted. For one thread.
+/// Publishes messages as ROS 2 does by default: reliable, volatile, the last ten kept. A slow, stopped or absent
+/// subscriber delays it by at most ten milliseconds per message. Such a subscriber misses messages, which are counted.
+/// For one thread.
 class DdsPublisher {
  public:
   struct Counts {
@@ -30,15 +30,15 @@ class DdsPublisher {
   };
   /// Throws UsageError or OutputError.
   DdsPublisher(const DdsPlace& place, const std::set<Topic>& topics);
-  /// Gives subscribers up to a second for what they have not acknowledged.
+  /// Gives subscribers up to a second to acknowledge the last messages.
   ~DdsPublisher();
   DdsPublisher(const DdsPublisher&) = delete;
   DdsPublisher& operator=(const DdsPublisher&) = delete;
 
-  /// False when not each topic has so many subscribers in time, or when asked to stop.
+  /// False when a topic has fewer subscribers in the end, or when asked to stop.
   bool waitForSubscribers(int count, std::chrono::milliseconds patience, const std::stop_token& stop) const;
 
-  /// True for the topics that it was made with; no other one is to be published.
+  /// True for the topics that it was made with; others must not be published.
   bool publishes(Topic topic) const;
   void publish(const ros::PoseStamped& message);
   void publish(const ros::Odometry& message);
@@ -50,7 +50,7 @@ class DdsPublisher {
 
   /// The counts of its topics, in their order.
   std::vector<Counts> counts() const;
-  /// On loopback: nobody outside of this machine can send to it.
+  /// True on loopback: nobody outside of this machine can send to it.
   bool isShielded() const;
 
  private:

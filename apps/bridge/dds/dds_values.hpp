@@ -9,11 +9,10 @@
 
 #include "apps/bridge/messages/ros_messages.hpp"
 
-/// Parts of messages in the types that idlc makes of apps/bridge/idl. Strings and sequences are those of what they are
-/// made from.
+/// Parts of messages in the types that idlc makes of apps/bridge/idl. Strings and sequences are those of the arguments.
 namespace motorcade {
 
-/// DDS has no constant types; what writes a message only reads it.
+/// DDS has no constant types, but only reads a message that it writes.
 inline char* ddsText(const std::string& text) { return const_cast<char*>(text.c_str()); }
 
 template <class Sequence, class Item>

@@ -48,7 +48,7 @@ class Reader {
 
   dds_entity_t condition() const { return waiting_.get(); }
 
-  /// The oldest sample that waits, freed with its last owner.
+  /// The oldest waiting sample, freed with its last owner.
   template <class Sample>
   std::shared_ptr<const Sample> take() const {
     const auto free = [&type = type_](Sample* sample) {

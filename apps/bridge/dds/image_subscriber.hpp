@@ -15,8 +15,8 @@
 namespace motorcade {
 
 /// Receives two cameras' images and camera_info, and the vehicle's own motion where that is wanted. A name that ends in
-/// `/compressed` is that of a sensor_msgs/CompressedImage, another one of a sensor_msgs/Image. The place's DDS domain
-/// has been made: by a DdsPublisher. For one thread.
+/// `/compressed` is that of a sensor_msgs/CompressedImage, another one of a sensor_msgs/Image. A DdsPublisher must have
+/// made the place's DDS domain. For one thread.
 class ImageSubscriber {
  public:
   struct Params {
@@ -40,7 +40,7 @@ class ImageSubscriber {
   std::optional<CameraInfoMessage> takeInfo(StereoSide side);
   /// The oldest that waits.
   std::optional<VehicleMotion> takeMotion();
-  /// The number of those that send on the image topic now, with its type.
+  /// The number of current publishers of the image topic, with its type.
   int publishers(StereoSide side) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// The name that the column `kind` of a run's files has.
+/// The kind's name in the column `kind` of a run's files.
 const char* classIdOf(Result::Kind kind) {
   switch (kind) {
     case Result::Kind::kUnknown:

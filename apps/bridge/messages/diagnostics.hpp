@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// The tracker's state in a frame: OK where the camera's motion was measured, WARN where it was less surely, ERROR
-/// where the pose is predicted, or something is wrong with the rig.
+/// The tracker's state in a frame. OK: the camera's motion was measured. WARN: it was measured less surely. ERROR: the
+/// pose is predicted, or the rig has a fault.
 ros::DiagnosticArray diagnosticsOf(const Result& result, const std::string& hardware_id);
 
 }  // namespace motorcade

@@ -11,8 +11,8 @@ struct KindShare {
   double probability = 0;
 };
 
-/// The kinds that an object may be: the one that the tracker names, and unknown with the rest. The shares sum to one.
-/// All is unknown where no kind is named: the tracker's probability is then that of a kind that it does not tell.
+/// Possible kinds of an object: the one that the tracker names, and unknown with the rest. The shares sum to one. All
+/// is unknown where no kind is named: the tracker's probability is then that of a kind that it does not publish.
 std::vector<KindShare> kindShares(const Result::Object& object);
 
 }  // namespace motorcade

@@ -21,7 +21,7 @@ constexpr float kOpaque = 1, kGlass = 0.6F, kFaint = 0.25F;
 using Type = ros::Marker::Type;
 using Action = ros::Marker::Action;
 
-/// ROS has 32 bits; an id that is used again after 2^31 objects is that of one long gone.
+/// A marker's id of ROS, 32 bits. An id that is used again after 2^31 objects belonged to an object long gone.
 std::int32_t markerId(std::int64_t object) {
   return static_cast<std::int32_t>(object & std::numeric_limits<std::int32_t>::max());
 }

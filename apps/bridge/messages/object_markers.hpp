@@ -9,10 +9,10 @@
 
 namespace motorcade {
 
-/// Shows the objects of each result as markers in the world: in the namespace `box` a cube, where its size is known, in
-/// `label` its id and speed, in `velocity` an arrow as long as the way of a second; the marker's id is the object's.
-/// What was shown and is no longer there is deleted. The first array deletes all markers of an earlier publisher. Call
-/// it in frame order.
+/// Shows the objects of each result as markers in the world. In the namespace `box` it is a cube, where its size is
+/// known, in `label` its id and speed, in `velocity` an arrow of one second's motion. The marker's id is the object's.
+/// Markers of objects that are gone are deleted. The first array deletes all markers of an earlier publisher. Call it
+/// in frame order.
 class ObjectMarkers {
  public:
   struct Params {

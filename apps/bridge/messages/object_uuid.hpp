@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// An object's id as a UUID of version 8 (RFC 9562): the microseconds of the first stamp of its tracker's drive, 60
-/// bits of them, and the tracker's id, 62 bits. Objects of different passes have different ones, a drive that is played
-/// again the same.
+/// An object's id as a UUID of version 8 (RFC 9562). It has 60 bits of the microseconds of the first stamp of its
+/// tracker's drive, and 62 bits of the tracker's id. Objects of different passes have different ones; a drive that is
+/// played again has the same.
 ros::Uuid uuidOf(std::int64_t object, std::int64_t first_stamp_ns);
 
 /// The usual text, as 0125d8e3-1b2c-8f00-8000-000000000007.

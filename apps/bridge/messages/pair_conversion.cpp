@@ -58,7 +58,7 @@ PairConversion::PairConversion(const Sequence& cameras, const std::array<CameraT
       bayer_(cameras.bayer),
       rectify_(withoutMosaic(cameras)) {}
 
-/// Those that hold the brightest sample of the pair.
+/// The bits that hold the brightest sample of the pair.
 int PairConversion::bitsFor(const ReceivedPair& pair) const {
   if (sample_bits_) return *sample_bits_;
   return usedSampleBits(0,

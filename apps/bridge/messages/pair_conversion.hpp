@@ -19,7 +19,7 @@ using ReceivedPair = StampPairing<ReceivedImage>::Pair;
 /// The image's size, from its header. Throws InputError, which begins with `name`.
 ImageSize sizeOf(const ReceivedImage& image, const std::string& name);
 
-/// The knowledge of the cameras: the user's word, else both sides' camera_info.
+/// Knowledge of the cameras: the user's, or else both sides' camera_info.
 struct CameraKnowledge {
   std::array<CameraTopics, 2> topics{};
   GivenCameras given{};
@@ -31,7 +31,7 @@ struct CameraKnowledge {
 /// The camera and its rectification. Throws InputError or UsageError.
 Sequence camerasOf(const CameraKnowledge& known, ImageSize size);
 
-/// From the images that came to those that the tracker takes: gray, of the camera's size, rectified. Remembers how many
+/// Converts received images to those that the tracker takes: gray, of the camera's size, rectified. Remembers how many
 /// bits the samples of 16 bits use, which is the same for all pairs.
 class PairConversion {
  public:

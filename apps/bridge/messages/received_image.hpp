@@ -9,14 +9,14 @@
 
 namespace motorcade {
 
-/// An image as it came, and what holds its bytes.
+/// An image as it came, and the owner of its bytes.
 struct ReceivedImage {
   std::int64_t stamp_ns = 0;
   std::variant<ImageMessage, CompressedImageMessage> message{};
   std::shared_ptr<const void> holder{};
 };
 
-/// The names of what a pair of cameras publishes, as ROS has them: `/left/image_raw`.
+/// Names of a camera's topics, as ROS has them: `/left/image_raw`.
 struct CameraTopics {
   std::string image{}, info{};  // no info: it is not read
 };

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-/// The values of the messages that the bridge publishes, as ROS 2 defines them (geometry_msgs, nav_msgs,
-/// tf2_msgs, visualization_msgs), without what it leaves empty. Lengths are meters, angles radians.
+/// The values of the messages that the bridge publishes, as ROS 2 defines them (geometry_msgs, nav_msgs, tf2_msgs,
+/// visualization_msgs). Fields that it leaves empty are missing. Lengths are meters, angles radians.
 namespace motorcade::ros {
 
 struct Time {
@@ -33,7 +33,7 @@ struct Pose {
   Quaternion orientation{};
 };
 
-/// Row by row, of (x, y, z, rotation about x, about y, about z), the axes those of the frame in which the value stands.
+/// Covariance, row by row, of (x, y, z, rotation about x, about y, about z) along the axes of the value's frame.
 using Covariance = std::array<double, 36>;
 
 struct PoseStamped {

@@ -7,8 +7,8 @@
 
 #include "apps/bridge/messages/ros_messages.hpp"
 
-/// The values of messages about objects, as autoware_perception_msgs and vision_msgs define them, without what the
-/// bridge leaves empty.
+/// The values of messages about objects, as autoware_perception_msgs and vision_msgs define them. Fields that the
+/// bridge leaves empty are missing.
 namespace motorcade::ros {
 
 using Uuid = std::array<std::uint8_t, 16>;
@@ -19,7 +19,7 @@ struct ObjectClassification {
   float probability = 0;
 };
 
-/// Its shape is a bounding box, and its pose that of the box' middle.
+/// An object whose shape is a bounding box, with the pose of the box' middle.
 struct TrackedObject {
   enum class Orientation : std::uint8_t { kUnavailable = 0, kSignUnknown = 1, kAvailable = 2 };
   Uuid object_id{};

@@ -23,7 +23,7 @@ inline constexpr std::array<TopicNames, kTopicCount> kTopicNames{{{"pose", "moto
                                                                   {"diagnostics", "diagnostics"},
                                                                   {"tf", "tf"}}};
 
-/// All but tf: two that publish one transform contradict each other.
+/// All but tf: two publishers of one transform would contradict each other.
 inline constexpr const char* kDefaultTopics = "pose,odometry,markers,tracked_objects,detections,diagnostics";
 
 /// "/motorcade/pose, ... and /tf".

@@ -14,12 +14,13 @@ namespace {
 using Label = ros::ObjectClassification::Label;
 using Orientation = ros::TrackedObject::Orientation;
 
-/// Three standard deviations then reach a right angle: ahead and astern are told apart.
+/// Largest standard deviation of a known heading. Three of them reach a right angle, so that ahead and astern differ.
 constexpr double kMostHeadingSigma_rad = std::numbers::pi / 6;
 
 enum Axis { kX, kY, kZ, kAboutX, kAboutY, kAboutZ };  // rows of twists and covariances
 
-/// The tracker does not tell trucks from buses, nor bicycles from motorcycles: these stand for both.
+/// Label of a kind. The tracker does not distinguish trucks from buses, nor bicycles from motorcycles: these stand for
+/// both.
 Label labelOf(Result::Kind kind) {
   switch (kind) {
     case Result::Kind::kUnknown:
@@ -64,7 +65,7 @@ void setTwist(const Result::Object& object, ros::TrackedObject& message) {
   message.twist_covariance = rowsOf<6>(covariance);
 }
 
-/// The acceleration is that of the body's origin along its path, and of its yaw rate.
+/// Sets the acceleration of the body's origin along its path, and that of its yaw rate.
 void setAcceleration(const Result::Object& object, ros::TrackedObject& message) {
   Vector6d variances = Vector6d::Constant(kUnknownVariance);
   if (const auto& known = object.acceleration) {

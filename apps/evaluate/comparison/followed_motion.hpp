@@ -16,7 +16,7 @@ struct LabelMotion {
   Statistics me_m, me_deg;
 };
 
-/// The largest error of one kind, and where it is.
+/// The largest error of one kind, and its frame, label and track.
 struct LargestStep {
   double error = 0;  // m or deg
   FrameId frame;
@@ -24,8 +24,8 @@ struct LargestStep {
   TrackId track;
 };
 
-/// Errors of the motion of everything that moves and is followed, in the form that published figures have (VDO-SLAM,
-/// DynoSAM): root mean squares over each object's frames, averaged over the objects. Labels count however hidden or
+/// Errors of the motion of everything that moves and is followed, in the form of published figures (VDO-SLAM, DynoSAM).
+/// They are root mean squares over each object's frames, averaged over the objects. Labels count however hidden or
 /// small they are, and rows of any state.
 struct FollowedMotion {
   std::vector<LabelMotion> objects;  // those with a step at least, by label

@@ -10,16 +10,18 @@ namespace motorcade {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
-/// From one frame to the next, of truth and estimate together: inertial units jitter by about this much.
+/// Sigma of a step between frames, truth and estimate together. Inertial units jitter by about this much.
 constexpr double kStepSigma_m = 0.02, kStepSigma_rad = 0.03 * kRadPerDeg;
-/// Of the estimated position: visual odometry drifts by about a hundredth of the way; what the first pose's noise does.
+/// Sigma of the estimated position. Visual odometry drifts by about a hundredth of the path; the constant is the first
+/// pose's noise.
 constexpr double kPathSigmaPerWay = 0.01, kPathSigma_m = 0.1;
-/// Wide: a lever arm also stands for what else goes with the turning of the drive, such as a lag of the truth.
+/// Sigma of the prior. It is wide, as the lever arm also absorbs other errors that grow with turning, such as a lag of
+/// the truth.
 constexpr double kPriorSigma_m = 1, kPriorSigma_rad = 2 * kRadPerDeg;
 constexpr int kMostRounds = 20;
 constexpr double kConverged = 1e-10;  // m and rad
 
-/// The same motion as both tell it, and how well they should agree.
+/// The same motion by estimate and truth, and the weight of their difference.
 struct MotionPair {
   SE3 estimated, true_motion;
   Vector6d weight;  // inverse variances
@@ -34,7 +36,7 @@ Vector6d weightOf(double sigma_m, double sigma_rad) {
 std::vector<MotionPair> motionPairs(const std::vector<SE3>& estimate, const std::vector<SE3>& truth) {
   std::vector<MotionPair> pairs;
   double way_m = 0;
-  // The positions' errors are one drift seen again and again: all of them together count as one.
+  // The positions' errors are one drift, seen repeatedly: all of them together count as one.
   const double share = 1 / static_cast<double>(truth.size());
   for (std::size_t k = 1; k < truth.size(); ++k) {
     const SE3 step = truth[k - 1].inverse() * truth[k];

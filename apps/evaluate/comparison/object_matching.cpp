@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-/// Labels that are harder to see are not asked for: KITTI's moderate level, with the truncation of its hard one.
+/// Limits of the labels that are asked for: KITTI's moderate level, with the truncation of its hard one.
 constexpr double kMaxTruncated = 0.5, kMinHeight_px = 25;
 constexpr int kMaxOccluded = 1;           // partly
 constexpr std::int64_t kSpeedFrames = 3;  // before and after the frame, over which a label's speed is taken
@@ -55,8 +55,8 @@ bool mostlyInside(const Box& box, const Box& area) {
          overlapArea(box, area) > 0;
 }
 
-/// The middle of a row's cuboid, which is what a label gives; the body's origin, a point somewhere on it, where the row
-/// has none.
+/// The middle of a row's cuboid, the point that a label gives. Without a cuboid it is the body's origin, an arbitrary
+/// point on it.
 Eigen::Vector3d middleOf(const ObjectEstimate& object) {
   return object.cuboid ? object.T_world_body * object.cuboid->center_body : object.T_world_body.translation();
 }

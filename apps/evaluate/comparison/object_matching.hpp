@@ -15,7 +15,7 @@ namespace motorcade {
 /// Bounds of the two ranges that objects are measured in.
 inline constexpr double kNear_m = 30, kFar_m = 50;
 
-/// What the measures need to know of a label in one frame.
+/// A label in one frame, with the properties that the measures need.
 struct TrueObject {
   ObjectTruth truth;
   bool counted = false;     // well enough in view to be asked for
@@ -27,7 +27,7 @@ struct TrueObject {
   bool asked() const { return counted && moving; }
 };
 
-/// Does a row tell of what was seen, rather than of what was only predicted or hardly seen?
+/// True for a row of an object that was seen, not only predicted or hardly seen.
 inline bool isReported(const ObjectEstimate& object) {
   return object.state != ObjectState::kPredicted && object.points >= 3;
 }
@@ -61,22 +61,22 @@ struct AskedPair {
 std::vector<AskedPair> askedPairs(const std::vector<ComparedFrame>& frames, double from_m = 0,
                                   double to_m = std::numeric_limits<double>::infinity());
 
-/// Rows of any state on labels that move, however hidden these are, in the order of the frames.
+/// Rows of any state on labels that move, whatever their occlusion, in the order of the frames.
 std::vector<AskedPair> movingPairs(const std::vector<ComparedFrame>& frames);
 
 /// The number of rows of the same track that come before each row.
 std::map<const MatchedRow*, int> rowsBefore(const std::vector<ComparedFrame>& frames);
-/// A quantity that takes some views to be known counts from a track's tenth row on.
+/// Rows of a track before those that count for a quantity that needs several views.
 inline constexpr int kEarlyRows = 9;
 
 /// Labels with their motion, from all frames of the sequence. `stamps` are the frames' times.
 std::map<FrameId, std::vector<TrueObject>> describeObjects(const ObjectTruths& truths,
                                                            const std::vector<Timestamp>& stamps);
 
-/// Every frame that has a camera pose in `tracks` and in `camera`, with its rows matched one to one to labels: as many
-/// as possible within the gate max(3 m, half the length + 0.08 z), then the least total distance on the ground as seen
-/// from the camera, of the middle of a row's cuboid (of the body's origin, where it has none). Without labels the
-/// frames have no objects.
+/// Every frame that has a camera pose in `trajectories` and in `camera`, with its rows matched one to one to labels.
+/// The matching takes as many pairs as possible within the gate max(3 m, half the length + 0.08 z), then the least
+/// total distance. Distances are on the ground as seen from the camera, from the middle of a row's cuboid, or else from
+/// the body's origin. Without labels the frames have no objects.
 std::vector<ComparedFrame> compareFrames(const RunFolder::Trajectories& trajectories, std::int64_t first_frame,
                                          const CameraTruth& camera, const ObjectTruths* truths,
                                          const std::vector<Timestamp>& stamps);

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// H is transferred from the estimated to the true camera.
+/// Error of a motion. H is transferred from the estimated to the true camera.
 SE3 motionError(const AskedPair& before, const AskedPair& now) {
   const SE3 H_world = now.row->row.object.T_world_body * before.row->row.object.T_world_body.inverse();
   const SE3 H_cam = before.frame->T_world_cam.inverse() * H_world * before.frame->T_world_cam;
@@ -43,7 +43,7 @@ void count(DetectionCounts& counts, bool found) {
   counts.found += found;
 }
 
-/// False rows of one frame: of any state, on no label or on one that never moves.
+/// Counts the false rows of one frame: rows of any state, on no label or on one that never moves.
 void countRows(const ComparedFrame& frame, DetectionErrors& errors) {
   for (const auto& row : frame.rows) {
     ++errors.rows;

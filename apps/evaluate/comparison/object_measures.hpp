@@ -9,7 +9,7 @@
 #include "apps/evaluate/comparison/object_positions.hpp"
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 
-/// How well objects were found, followed and measured. All over labels that are counted and move.
+/// Detection, following and accuracy of objects, over labels that are counted and move.
 namespace motorcade {
 
 /// E = L(k)^-1 H L(k-1) of one frame k: H the estimated motion, L the label's poses, in the true camera.
@@ -19,7 +19,7 @@ struct ObjectStepError {
   TrackId track;
   SE3 error;
 };
-/// Of each track on its label, where both frames have a pair; `pairs` in the order of the frames.
+/// Step errors of each track on its label, where both frames have a pair. `pairs` are in the order of the frames.
 std::vector<ObjectStepError> objectStepErrors(const std::vector<AskedPair>& pairs);
 
 /// Motion of objects from frame to frame, and speed.
@@ -38,7 +38,7 @@ struct ObjectErrors {
   int labeled_frames = 0;   // counted and moving
   int followed_frames = 0;  // by any track
   int tracks = 0;
-  /// Of the body's origin, SE(3) aligned; "first pose" aligns by the body frame at the first match.
+  /// Path of the body's origin, SE(3) aligned; "first pose" aligns by the body frame at the first match.
   std::optional<TrajectoryErrors> trajectory;
   std::optional<PositionErrors> positions;
   MotionErrors motion;

@@ -7,11 +7,11 @@
 #include "apps/evaluate/comparison/followed_label.hpp"
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 
-/// How far a body's origin is from where its label says, by what is held against it.
+/// Distance of a body's origin from its label's position, by several references.
 namespace motorcade {
 
-/// A body's origin is fixed to its object, but where is arbitrary: `offset removed` takes out the constant offset
-/// between origin and label, the median over the frames in the label's frame.
+/// The reference of a position error. A body's origin is fixed to its object, but at an arbitrary place. `offset
+/// removed` takes out the constant offset between origin and label, the median over the frames in the label's frame.
 enum class PositionKind : std::size_t {
   kAligned,               // in the world, after SE(3) alignment of the whole path
   kAlignedOffsetRemoved,  // both
@@ -21,7 +21,7 @@ enum class PositionKind : std::size_t {
   kAsSeenOffsetRemoved
 };
 inline constexpr std::size_t kPositionKinds = 6;
-/// As in the JSON.
+/// Keys in the JSON.
 inline constexpr std::array<const char*, kPositionKinds> kPositionKindNames{
     "aligned", "aligned_offset_removed", "world", "world_offset_removed", "as_seen", "as_seen_offset_removed"};
 
@@ -29,8 +29,8 @@ struct PositionErrors {
   std::size_t frames = 0;
   std::array<Statistics, kPositionKinds> ate_m;
   Statistics are_deg, are_as_seen_deg;  // rotation, without the mean rotation between body and label
-  /// How far the origin moves on its object along the label's axes (length, height, width) while it is near: largest
-  /// minus smallest, after a median over a few frames. Empty when it is near for fewer frames.
+  /// Drift of the origin on its object along the label's axes (length, height, width) while it is near. It is the
+  /// largest minus the smallest value, after a median over a few frames. Empty when it is near for fewer frames.
   std::optional<Eigen::Vector3d> origin_drift_m;
 
   const Statistics& of(PositionKind kind) const { return ate_m[static_cast<std::size_t>(kind)]; }
@@ -38,10 +38,11 @@ struct PositionErrors {
 /// Empty for fewer than two frames.
 std::optional<PositionErrors> positionErrors(const FollowedLabel& label);
 
-/// Shorter ones say little: of two frames the median alone takes half of the error.
+/// Least number of frames for the mean. Shorter paths say little: of two frames the median alone takes half of the
+/// error.
 inline constexpr std::size_t kLeastFramesOfMean = 10;
 
-/// Over the objects that were followed for at least `kLeastFramesOfMean` frames.
+/// Mean over the objects that were followed for at least `kLeastFramesOfMean` frames.
 struct MeanPositionErrors {
   int objects = 0;
   std::array<double, kPositionKinds> ate_m{};  // of the objects' root mean squares

@@ -12,7 +12,7 @@ double areaInImage(const Box& box) {
   return std::max(0.0, box.right_px - box.left_px) * std::max(0.0, box.bottom_px - box.top_px);
 }
 
-/// Of what both have in common, from that and the sum of both.
+/// Intersection over union from the common part and the sum of both.
 double iouOf(double common, double sum) { return sum > common ? common / (sum - common) : 0; }
 
 double volumeOf(const UprightCuboid& cuboid) { return areaOf(cuboid.corners) * (cuboid.bottom_m - cuboid.top_m); }
@@ -54,7 +54,7 @@ double areaOf(const Footprint& convex) {
   return 0.5 * std::abs(twice);
 }
 
-/// Sutherland and Hodgman's clipping: what of `a` lies to the left of every edge of `b`.
+/// Clips `a` by every edge of `b` (Sutherland and Hodgman), and returns the area that is left.
 double overlapArea(const Footprint& a, const Footprint& b) {
   Footprint rest = a;
   for (std::size_t edge = 0; edge < b.size() && !rest.empty(); ++edge) {

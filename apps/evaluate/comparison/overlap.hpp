@@ -7,18 +7,18 @@
 #include "core/messages.hpp"
 #include "io/truth/ground_truth.hpp"
 
-/// How far boxes cover one another: in the image, as seen from above and in space.
+/// Overlap of boxes in the image, as seen from above and in space.
 namespace motorcade {
 
-/// In the image [px^2].
+/// Common area in the image [px^2].
 double overlapArea(const Box& a, const Box& b);
-/// Area of the intersection over that of the union, of two boxes in the image.
+/// Intersection over union of two boxes in the image.
 double intersectionOverUnion(const Box& a, const Box& b);
 
 /// A cuboid as seen from above: the corners of its footprint in order, in any right-handed plane.
 using Footprint = std::vector<Eigen::Vector2d>;
 double areaOf(const Footprint& convex);
-/// Of two convex footprints with counterclockwise corners.
+/// Common area of two convex footprints with counterclockwise corners.
 double overlapArea(const Footprint& a, const Footprint& b);
 
 /// A cuboid that stands upright in the camera's frame.
@@ -29,7 +29,7 @@ struct UprightCuboid {
   Eigen::Vector3d size_m;          // length, width, height
 };
 UprightCuboid labeledCuboid(const ObjectTruth& truth);
-/// Of an object that has a cuboid, as seen from the estimated camera.
+/// Cuboid of an object that has one, as seen from the estimated camera.
 UprightCuboid estimatedCuboid(const SE3& T_world_cam, const ObjectEstimate& object);
 
 /// Intersection over union of the footprints, and of the volumes.

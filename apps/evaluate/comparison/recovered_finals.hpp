@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// Gives a run that did not end in order final estimates of all of its frames: those that have none get the online
-/// ones, moved to where the last final pose of the camera is. Returns how many frames these are.
+/// Completes the final estimates of a run that did not end in order. Frames without one get the online estimate, moved
+/// to the camera's last final pose. Returns their number.
 std::size_t recoverFinals(RunFolder& run);
 
 }  // namespace motorcade

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// The frames of `label` that `other` has too.
+/// The frames of `label` that are also in `other`.
 FollowedLabel commonFrames(const FollowedLabel& label, const FollowedLabel& other) {
   std::set<FrameId> theirs;
   for (const auto& frame : other.frames) theirs.insert(frame.frame);

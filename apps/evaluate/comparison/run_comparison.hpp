@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// One label over the frames in which both runs followed it, by the two tracks that have the most frames in common.
+/// One label over the frames in which both runs followed it, by the two tracks with the most common frames.
 struct ComparedObject {
   std::int64_t label = -1;
   TrackId track, baseline_track;
@@ -21,7 +21,7 @@ struct RunComparison {
   int objects_of_mean = 0;  // followed in at least `kLeastFramesOfMean` common frames
   std::array<double, kPositionKinds> mean_relative_error{};
 };
-/// Of two runs of the same drive. Labels that only one of them followed are left out.
+/// Compares two runs of the same drive. Labels that only one of them followed are left out.
 RunComparison compareRuns(const std::vector<FollowedLabel>& ours, const std::vector<FollowedLabel>& baseline);
 
 }  // namespace motorcade

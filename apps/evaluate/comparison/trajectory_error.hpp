@@ -6,7 +6,7 @@
 
 #include "core/se3.hpp"
 
-/// How far an estimated trajectory is from the true one. Both have one pose per frame, in the same order.
+/// Errors of an estimated trajectory. Estimate and truth have one pose per frame, in the same order.
 namespace motorcade {
 
 inline constexpr double kSigmas95 = 1.96;  // half the width of the 95 % interval of a Gaussian
@@ -35,7 +35,7 @@ struct TrajectoryErrors {
 /// Empty for fewer than two poses.
 std::optional<TrajectoryErrors> trajectoryErrors(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
 
-/// What the estimated step from a pose to the next adds to the true one.
+/// Difference of the estimated step from one pose to the next to the true step.
 SE3 stepError(const SE3& estimate_before, const SE3& estimate, const SE3& truth_before, const SE3& truth);
 
 double angleOf_deg(const Eigen::Matrix3d& rotation);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kChord_m = 5;
 constexpr double kWayDiffers_percent = 1, kDiffers_m = 1;
 
-/// Packets that cannot be used are no reason not to measure by poses that can.
+/// Truth from velocities; empty if the packets cannot be used, as usable poses are measured all the same.
 std::optional<CameraTruth> velocityTruth(const Sequence& sequence) {
   try {
     return readCameraTruth(sequence, OxtsTimes::kVelocities);

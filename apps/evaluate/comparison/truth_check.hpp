@@ -16,19 +16,18 @@ struct TruthCheck {
   double differencePercent() const;      // of the way, positive where the velocities go farther
   bool waysDiffer() const;
   bool jumps() const;
-  /// Positions and velocities cannot both be right: the ways differ by more than 1 % and 1 m, or one chord's motions by
-  /// more than 1 m. The unit's velocities are good to some .05 m/s, .5 % of the way at the speed of a car, its
-  /// positions to some .5 m; and a truth that is wrong by 1 % cannot judge cameras whose errors are about 1 %.
+  /// True when positions and velocities cannot both be right: the ways differ by more than 1 % and 1 m, or one chord's
+  /// motions by more than 1 m. The unit's velocities are good to some .05 m/s, .5 % of the way at the speed of a car,
+  /// its positions to some .5 m. A truth that is wrong by 1 % cannot judge cameras whose errors are about 1 %.
   bool doubtful() const { return waysDiffer() || jumps(); }
 };
 
 /// Empty where the sequence has no velocities, no calibration of the unit, or no times of the packets.
 std::optional<TruthCheck> checkTruth(const Sequence& sequence, const CameraTruth& truth);
 
-/// Angle between the directions in which two paths go, each as its own camera sees it [deg]; 0 where one of them has no
-/// main direction. Mountings of inertial units are off by a degree or two: an angle above `kOtherFrame_deg` says that
-/// the truth has poses of another frame than the camera's (x ahead, as of inertial units), or quaternions in another
-/// order.
+/// Angle between the main directions of two paths, each as its own camera sees it [deg]; 0 where one of them has none.
+/// Mountings of inertial units are off by a degree or two. An angle above `kOtherFrame_deg` means that the truth has
+/// poses of another frame than the camera's (x ahead, as of inertial units), or quaternions in another order.
 double courseDifference_deg(const std::vector<SE3>& estimate, const std::vector<SE3>& truth);
 inline constexpr double kOtherFrame_deg = 20;
 

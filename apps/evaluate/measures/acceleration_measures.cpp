@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kHalfSpan_s = 0.2, kStampTolerance_s = 0.01;
 
-/// A label's poses by frame, and the motion that they tell.
+/// A label's poses by frame, and the motion computed from them.
 class TruePath {
  public:
   explicit TruePath(const std::vector<Timestamp>& stamps) : stamps_(stamps) {}
@@ -56,7 +56,7 @@ std::map<std::int64_t, TruePath> truePaths(const std::vector<ComparedFrame>& fra
   return paths;
 }
 
-/// Errors with the standard deviations that rows tell of them.
+/// Errors with the rows' standard deviations of them.
 struct Samples {
   std::vector<double> errors;
   int covered = 0;

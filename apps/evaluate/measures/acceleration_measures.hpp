@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// Errors of one quantity, and the share of them within 1.96 of the standard deviations that were told.
+/// Errors of one quantity, and the share of them within 1.96 of the estimated standard deviations.
 struct CoveredErrors {
   Statistics errors;
   double coverage = 0;
@@ -19,10 +19,10 @@ struct AccelerationErrors {
   CoveredErrors along_mps2, yaw_radps2;
 };
 
-/// Over reported rows, from the tenth of each track on, on labels that are asked for. The true acceleration is the
-/// change of a label's speed and yaw rate from 0.2 s before to 0.2 s after a frame, both by central differences over
-/// the neighboring frames; rows count where all of these frames have the label. `stamps` are the times of the
-/// sequence's frames.
+/// Errors over reported rows on labels that are asked for, from the tenth row of each track on. The true acceleration
+/// is the change of a label's speed and yaw rate from 0.2 s before to 0.2 s after a frame. Speed and yaw rate are
+/// central differences over the neighboring frames. Rows count where all of these frames have the label. `stamps` are
+/// the times of the sequence's frames.
 AccelerationErrors accelerationErrors(const std::vector<ComparedFrame>& frames, const std::vector<Timestamp>& stamps);
 
 }  // namespace motorcade

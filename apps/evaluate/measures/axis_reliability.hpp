@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// A reliability diagram of covariances: do errors along each axis lie within an interval as often as their standard
-/// deviation says? The interval of a probability q holds q of a normal distribution around zero.
+/// A reliability diagram of covariances: it tells whether errors along each axis lie within an interval as often as
+/// their standard deviation says. The interval of a probability q holds q of a normal distribution around zero.
 struct AxisReliability {
   static constexpr int kAxes = 6, kTenths = 10;  // of (rho, phi), and of the probability
   static constexpr std::array<const char*, kAxes> kAxisNames = {"x", "y", "z", "about_x", "about_y", "about_z"};
@@ -27,7 +27,7 @@ struct AxisReliability {
 
 /// A list of `errors` for each axis, by its name.
 nlohmann::ordered_json jsonOf(const AxisReliability& reliability);
-/// Throws the library's exception where it is something else.
+/// Throws the library's exception for any other JSON.
 AxisReliability axisReliabilityOf(const nlohmann::json& json);
 
 }  // namespace motorcade

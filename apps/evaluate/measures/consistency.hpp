@@ -5,7 +5,7 @@
 #include "apps/evaluate/measures/axis_reliability.hpp"
 #include "core/se3.hpp"
 
-/// Whether errors are as large as covariances say.
+/// Compares errors with the covariances that were estimated for them.
 namespace motorcade {
 
 /// truth = estimate * exp(xi), xi ~ (0, covariance).
@@ -14,8 +14,8 @@ struct ErrorSample {
   Matrix6d covariance;
 };
 
-/// Normalized estimation errors squared, xi' covariance^-1 xi; their mean is the number of degrees of freedom where
-/// errors and covariances agree. The median tells whether a few frames or all of them are off.
+/// Normalized estimation errors squared, xi' covariance^-1 xi. Their mean is the number of degrees of freedom where
+/// errors and covariances agree. The median shows whether a few frames or all of them are off.
 struct NormalizedErrors {
   double mean_nees = 0, median_nees = 0;
   double coverage_95 = 0;  // share inside the 95 % region
@@ -30,14 +30,14 @@ struct CovarianceErrors {
 /// Samples whose covariance is not positive definite are left out.
 CovarianceErrors consistencyOf(const std::vector<ErrorSample>& samples);
 
-/// The same body as two estimates see it from a camera, with a constant between their body frames:
-/// T_cam_body = T_cam_other * Y. Right perturbations; a label has no covariance.
+/// The same body as two estimates see it from a camera, with a constant between their body frames: T_cam_body =
+/// T_cam_other * Y. Right perturbations; a label has no covariance.
 struct SeenTwice {
   SE3 T_cam_body, T_cam_other;
   Matrix6d covariance, other_covariance = Matrix6d::Zero();
 };
-/// The errors log(T_cam_body^-1 * T_cam_other * Y) with their covariances, of every frame. Y makes them least, weighted
-/// by the covariances, so that frames in which little is known do not bend what others know well.
+/// The errors log(T_cam_body^-1 * T_cam_other * Y) of all frames with their covariances. Y minimizes them, weighted by
+/// the covariances, so that uncertain frames do not bend what other frames know well.
 std::vector<ErrorSample> errorsWithoutOffset(const std::vector<SeenTwice>& frames);
 
 }  // namespace motorcade

@@ -26,7 +26,7 @@ CovarianceOf byTrackAndFrame(const CovarianceRows& rows) {
   return covariances;
 }
 
-/// The frames of one pair of body frames: a track with a label, or two tracks.
+/// The frames of one pair of body frames: of a track and a label, or of two tracks.
 struct SeenTrack {
   std::vector<SeenTwice> seen;
   std::vector<FrameId> frames;
@@ -44,7 +44,7 @@ std::vector<ErrorSample> samplesOf(const std::map<Key, SeenTrack>& tracks) {
   return samples;
 }
 
-/// A run's online estimates, ready to be asked by frame.
+/// A run's online estimates, indexed by frame.
 struct HalfRun {
   explicit HalfRun(const RunFolder& run) : folder(run), covariances(byTrackAndFrame(run.online.covariances)) {
     for (const auto& row : run.online.objects)
@@ -110,14 +110,14 @@ ErrorSample motionError(const ComparedFrame& from, const ComparedFrame& to, cons
   return {(estimate.inverse() * truth).log(), covariance};
 }
 
-/// The index of a row's frame; empty where the frame is not there.
+/// The index of a row's frame; empty where there is no such frame.
 std::optional<std::int64_t> placeOf(const RunFolder::CovarianceRow& row, const std::vector<ComparedFrame>& frames) {
   const std::int64_t place = frames.empty() ? -1 : row.frame.value - frames.front().frame.value;
   if (place < 0 || place >= std::ssize(frames)) return std::nullopt;
   return place;
 }
 
-/// The error of the camera's motion to a row's frame; empty where the frames do not reach back so far.
+/// The error of the camera's motion to a row's frame; empty where the frames do not reach back far enough.
 std::optional<ErrorSample> cameraError(const std::vector<ComparedFrame>& frames, const RunFolder::CovarianceRow& row,
                                        const SE3& T_true_cam) {
   const auto now = placeOf(row, frames);

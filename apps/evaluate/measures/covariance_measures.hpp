@@ -5,8 +5,8 @@
 #include "apps/evaluate/comparison/object_matching.hpp"
 #include "apps/evaluate/measures/consistency.hpp"
 
-/// The covariances of a run against the truth: over every fifth frame, as errors of neighboring frames are nearly the
-/// same.
+/// Compares the covariances of a run with the truth. Every fifth frame counts, as errors of neighboring frames are
+/// nearly the same.
 namespace motorcade {
 
 using CovarianceRows = std::vector<RunFolder::CovarianceRow>;
@@ -19,7 +19,7 @@ std::vector<ErrorSample> cameraErrorSamples(const std::vector<ComparedFrame>& fr
 std::vector<ErrorSample> cameraPoseSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows,
                                            const SE3& T_true_cam = {});
 
-/// The camera's normalized error squared in each frame that has a covariance, not only in every fifth.
+/// The camera's normalized error squared in each frame that has a covariance, not only in every fifth frame.
 struct FrameNees {
   FrameId frame;
   double nees = 0;
@@ -28,14 +28,14 @@ std::vector<FrameNees> cameraNees(const std::vector<ComparedFrame>& frames, cons
                                   const SE3& T_true_cam);
 
 /// Errors of objects relative to the camera of the same frame, without the constant offset between body and label of
-/// each track. Tracks with fewer than `kLeastFramesOfMean` frames are left out: the offset takes their errors away.
+/// each track. Tracks with fewer than `kLeastFramesOfMean` frames are left out: the offset absorbs their errors.
 std::vector<ErrorSample> objectErrorSamples(const std::vector<ComparedFrame>& frames, const CovarianceRows& rows);
 
 /// Two runs of one drive whose measurements are independent: their difference has the sum of their covariances.
 struct HalfErrors {
   CovarianceErrors camera, objects;
 };
-/// Objects are matched by their distance as seen from the camera. No truth is needed.
+/// Compares two runs without any truth. Objects are matched by their distance as seen from the camera.
 HalfErrors compareHalves(const RunFolder& a, const RunFolder& b);
 
 }  // namespace motorcade

@@ -28,7 +28,8 @@ struct CameraPaths {
   std::vector<SE3> estimate, truth;
 };
 
-/// Rendered drives come with the objects' exact poses; the truth of real ones is another instrument's.
+/// True unless the truth is exact. Rendered drives come with the objects' exact poses; the truth of real ones is
+/// another instrument's.
 bool mayBeMountedWrongly(const Sequence& sequence) { return !sequence.truth.exact(); }
 
 void measureMounted(KindEvaluation& kind, const CameraPaths& paths, const SE3& T_true_cam) {
@@ -47,7 +48,7 @@ void removeMounting(Evaluation& evaluation, const std::vector<ComparedFrame>& fi
   measureMounted(evaluation.online, of_online, T_true_cam);
 }
 
-/// Zero where no velocities stand beside the places.
+/// The noise of the truth's positions; zero without velocities beside them.
 Eigen::Matrix3d placeNoiseOf(const Sequence& sequence, const CameraTruth& camera, OxtsTimes truth) {
   if (truth == OxtsTimes::kVelocities || sequence.truth.oxts.empty()) return Eigen::Matrix3d::Zero();
   try {
@@ -58,7 +59,7 @@ Eigen::Matrix3d placeNoiseOf(const Sequence& sequence, const CameraTruth& camera
   }
 }
 
-/// `mounting`, of the truth, is empty where that is exact.
+/// Evaluates covariances. `mounting`, of the truth, is empty where the truth is exact.
 CovarianceEvaluation evaluateCovariances(const std::vector<ComparedFrame>& frames,
                                          const RunFolder::Trajectories& trajectories,
                                          const std::optional<SE3>& mounting, const Eigen::Matrix3d& place_noise) {
@@ -122,7 +123,7 @@ KindEvaluation evaluateFrames(const std::vector<ComparedFrame>& frames) {
   return kind;
 }
 
-/// Labels of real drives jitter too much to be derived twice.
+/// Errors of accelerations where the truth is exact. Labels of real drives jitter too much to be derived twice.
 std::optional<AccelerationErrors> accelerationsOf(const std::vector<ComparedFrame>& frames, const Sequence& sequence) {
   if (!sequence.truth.exact()) return std::nullopt;
   return accelerationErrors(frames, sequence.stamps);
@@ -139,7 +140,7 @@ CameraTruth neededTruth(const Sequence& sequence, OxtsTimes times) {
   return *std::move(truth);
 }
 
-/// Poses are compared in the frame of the run's first camera, of which the truth must tell.
+/// Throws unless the truth knows the run's first frame. Poses are compared in the frame of the run's first camera.
 void requireTruthFrom(std::int64_t first_frame, const CameraTruth& camera) {
   if (first_frame < camera.first_frame || first_frame >= std::ssize(camera.T_world_cam))
     throw InputError(camera.source + ": tells of the frames from " + std::to_string(camera.first_frame) + " up to " +
@@ -167,7 +168,7 @@ void countFrames(Evaluation& evaluation, const RunFolder& run) {
   std::ranges::sort(evaluation.latency_ms);
 }
 
-/// The known poses at the times of the run's frames, up to the last that is known.
+/// The known poses at the times of the run's frames, up to the last known one.
 std::vector<SE3> posesOfRun(const StampedPoses& known, const std::filesystem::path& file,
                             std::span<const Timestamp> stamps, std::size_t frames_run) {
   if (known.stamps.size() < 2 || stamps.empty() || known.stamps.front() > stamps.front())

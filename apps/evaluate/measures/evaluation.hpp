@@ -99,8 +99,8 @@ Evaluation evaluateRun(const EvaluateOptions& options);
 KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequence,
                              OxtsTimes times = OxtsTimes::kInterpolated);
 
-/// A baseline's poses of the frames that a run has. The file has a pose for each frame of the sequence or of the run,
-/// or is a trajectory with times, which may end earlier. Throws InputError.
+/// A baseline's poses of a run's frames. The file has a pose for each frame of the sequence or of the run, or is a
+/// trajectory with times, which may end earlier. Throws InputError.
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
                                const Sequence& sequence);
 

@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// Is what is reported there as often as its rows say? A hit is a row on a label that moves at some time. Counts all
-/// rows but those in an area that the labels leave open.
+/// Reliability of the existence probability. A hit is a row on a label that moves at some time. Counts all rows but
+/// those in an area that the labels leave open.
 Reliability existenceErrors(const std::vector<ComparedFrame>& frames);
 
 }  // namespace motorcade

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Ids as consecutive numbers, in the order in which they come, with their frames.
+/// Ids as consecutive numbers in the order of first occurrence, with the number of their frames.
 struct Ids {
   std::map<std::int64_t, Eigen::Index> numbers;
   std::vector<double> frames;
@@ -25,25 +25,25 @@ struct Ids {
   }
 };
 
-/// A label and the track that stands for it in one frame, by their numbers.
+/// A label and its track in one frame, by their numbers.
 struct Match {
   Eigen::Index label, track;
   double similarity;
 };
 
-/// The whole drive: what is needed of it at every threshold.
+/// Counts of the whole drive that every threshold needs.
 struct Drive {
   Ids labels, tracks;
   double label_frames = 0, track_frames = 0;
   std::vector<Match> matches;
 
-  /// Frames in which a label or a track is there, or both, when they are together in `together` of them.
+  /// Size of the union of the label's and the track's frames, of which `together` have both.
   double either(Eigen::Index label, Eigen::Index track, double together) const {
     return labels.frames[label] + tracks.frames[track] - together;
   }
 };
 
-/// How well labels and tracks fit over the whole drive: the Jaccard index of their frames, where a frame counts by the
+/// Alignment of labels and tracks over the whole drive: the Jaccard index of their frames. A frame counts by the
 /// similarity's share of all that compete for it.
 Eigen::MatrixXd alignmentOf(const std::vector<HotaFrame>& frames, const Drive& drive) {
   Eigen::MatrixXd together = Eigen::MatrixXd::Zero(std::ssize(drive.labels.frames), std::ssize(drive.tracks.frames));
@@ -63,7 +63,7 @@ Eigen::MatrixXd alignmentOf(const std::vector<HotaFrame>& frames, const Drive& d
   return together;
 }
 
-/// One to one, with the largest sum of similarity times alignment.
+/// Matches one to one, with the largest sum of similarity times alignment.
 void matchFrame(const HotaFrame& frame, const Eigen::MatrixXd& alignment, Drive& drive) {
   std::vector<Eigen::Index> labels, tracks;
   for (const auto id : frame.labels) labels.push_back(drive.labels.numbers.at(id));
@@ -89,7 +89,7 @@ Drive matchedDrive(const std::vector<HotaFrame>& frames) {
   return drive;
 }
 
-/// Adds all that follows from the matches with at least the threshold's similarity, times `weight`.
+/// Adds the measures of the matches that have at least the threshold's similarity, times `weight`.
 void addThreshold(const Drive& drive, double threshold, double weight, Hota& hota) {
   std::map<std::pair<Eigen::Index, Eigen::Index>, double> together;
   double matches = 0, similarity = 0, ass_a = 0, ass_re = 0, ass_pr = 0;

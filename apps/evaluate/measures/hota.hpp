@@ -7,13 +7,13 @@
 
 namespace motorcade {
 
-/// One frame of labels and of what a tracker reported, each id at most once.
+/// One frame of labels and of a tracker's reports, each id at most once.
 struct HotaFrame {
   std::vector<std::int64_t> labels, tracks;
   Eigen::MatrixXd similarity;  // in [0, 1], a row per label, a column per track
 };
 
-/// HOTA and its parts, each the mean over the thresholds 0.05, 0.1, ... 0.95 of what counts as a match (Luiten et al.,
+/// HOTA and its parts, each the mean over the similarity thresholds 0.05, 0.1, ... 0.95 of a match (Luiten et al.,
 /// HOTA: a higher order metric for evaluating multi-object tracking, 2021).
 struct Hota {
   int labels = 0, rows = 0;  // over all frames

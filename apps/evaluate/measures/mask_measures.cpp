@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Pixels, as columns and rows apart: the loop over all pairs of two boundaries is the whole cost.
+/// Pixels, as separate columns and rows. The loop over all pairs of two boundaries takes all of the time.
 struct Pixels {
   std::vector<int> x, y;
   std::size_t size() const { return x.size(); }

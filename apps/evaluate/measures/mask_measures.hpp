@@ -9,7 +9,7 @@
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 #include "io/images/image_file.hpp"
 
-/// How well the outlines that `run --masks` wrote cover the objects' true pixels.
+/// Overlap of the outlines that `run --masks` wrote with the objects' true pixels.
 namespace motorcade {
 
 /// The pixels of an image that have a value.
@@ -22,12 +22,12 @@ struct PixelsOf {
 /// Pixels in both over pixels in either, of images of the same size; 0 where neither has any.
 double maskIou(const PixelsOf& a, const PixelsOf& b);
 
-/// How far two outlines are apart [px]: the mean, over the boundary pixels of both, of the distance to the nearest
-/// boundary pixel of the other. A boundary pixel belongs to the mask and has a neighbor (of four) in the image that
-/// does not: where the image's border cuts an object, it has no boundary. Empty when one of the masks has none.
+/// Distance of two outlines [px]: the mean over the boundary pixels of both of the distance to the nearest boundary
+/// pixel of the other. A boundary pixel belongs to the mask and has a neighbor (of four) in the image that does not.
+/// Where the image's border cuts an object, it has no boundary. Empty when one of the masks has none.
 std::optional<double> boundaryDistance_px(const PixelsOf& a, const PixelsOf& b);
 
-/// Over reported rows that were matched to labels which are asked for, of frames whose masks are there.
+/// Errors of the reported rows on labels that are asked for, in frames whose masks exist.
 struct MaskErrors {
   int rows = 0, rows_with_mask = 0;  // all, and those with a pixel of the track in their frame's mask
   double iou = 0;                    // mean over all rows, 0 for one without mask
@@ -35,7 +35,7 @@ struct MaskErrors {
   Statistics boundary_px;            // of the rows with mask
 };
 
-/// Of one range of distances each.
+/// Errors by range of distances.
 struct MaskEvaluation {
   MaskErrors within_30m, from_30_to_50m;
 };

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kFramesBetweenSegments = 10;
 constexpr double kLeastForLongSegments_m = 300;  // a shorter path has few segments of 100 m, if any
 
-/// The way along the path from its first pose to each.
+/// The distance along the path from its first pose to each pose.
 std::vector<double> waysAlong(const std::vector<SE3>& path) {
   std::vector<double> ways_m;
   ways_m.reserve(path.size());

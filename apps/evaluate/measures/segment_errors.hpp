@@ -9,16 +9,15 @@
 
 namespace motorcade {
 
-/// Errors of the motion over the segments of a path that have one of these lengths, in means.
+/// Mean errors of the motion over a path's segments of certain lengths.
 struct SegmentMeans {
   std::size_t segments = 0;
   double translation_percent = 0, rotation_deg_per_m = 0;
 };
 
-/// Errors of a path as the KITTI odometry benchmark measures them
-/// (Geiger et al., Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite, 2012, section 3):
-/// segments of eight lengths begin in every tenth frame, and each ends in the first frame that is farther along the
-/// true path than its length; the error of its motion is divided by that length.
+/// Errors of a path as in the KITTI odometry benchmark (Geiger et al., Are we ready for Autonomous Driving? The KITTI
+/// Vision Benchmark Suite, 2012, section 3). Segments of eight lengths begin in every tenth frame. Each ends in the
+/// first frame that is farther along the true path than its length. The error of its motion is divided by that length.
 struct SegmentErrors {
   static constexpr std::size_t kLengths = 8;
   struct OfLength : SegmentMeans {

@@ -6,27 +6,27 @@
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 #include "apps/evaluate/measures/hota.hpp"
 
-/// How completely, how soon and under how few names moving objects are reported.
+/// Measures of how completely, how soon and under how few ids moving objects are reported.
 namespace motorcade {
 
-/// What HOTA's similarity is the intersection over union of.
+/// Shapes whose intersection over union is HOTA's similarity.
 enum class HotaBox {
   kImage,      // boxes in the left image
   kFootprint,  // cuboids as seen from above, each from its camera; a row without a cuboid is like no label
 };
 
-/// Of all rows, predicted ones too, and the labels that are asked for nearer than `to_m`. A row that was matched to
-/// another label of something that moves at some time (farther, hidden, too small, at rest now), or that lies in an
-/// area which the labels leave open, counts neither as right nor as wrong; one on what never moves is wrong.
+/// HOTA of all rows, predicted ones too, and the labels that are asked for nearer than `to_m`. A row in an area that
+/// the labels leave open counts neither as right nor as wrong. Nor does a row on another label that moves at some time
+/// (farther, hidden, too small, at rest now). A row on something that never moves is wrong.
 Hota movingObjectsHota(const std::vector<ComparedFrame>& frames, HotaBox box, double to_m);
 
-/// How soon labels are reported: frames in which they are asked for before the first reported row of theirs.
+/// Delay of first reports: frames in which a label is asked for before its first reported row.
 struct FirstReports {
   int labels = 0, never = 0;
   Statistics frames;  // of the labels that are reported
 };
 
-/// Of the labels that are asked for nearer than `to_m`.
+/// First reports of the labels that are asked for nearer than `to_m`.
 FirstReports firstReports(const std::vector<ComparedFrame>& frames, double to_m);
 
 }  // namespace motorcade

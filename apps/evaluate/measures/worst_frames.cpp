@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// Of equal errors the earlier frame comes first.
+/// Keeps the `most` largest errors. The earlier frame comes first when two are equal.
 template <class Error>
 void keepLargest(std::vector<Error>& errors, std::size_t most, double Error::*size) {
   std::ranges::stable_sort(errors, std::greater(), size);

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// How far the camera's step from the frame before was from the true one.
+/// Error of the camera's step from the previous frame.
 struct CameraFrameError {
   FrameId frame;
   double rpe_t_m = 0, rpe_r_deg = 0;
@@ -21,7 +21,7 @@ struct ObjectFrameError {
   double me_t_m = 0;
 };
 
-/// Where a run was farthest from the truth: the first frames to look at, the largest translation errors first.
+/// The frames with the largest translation errors, the largest first. They are the first to look at.
 struct WorstFrames {
   std::vector<CameraFrameError> camera;
   std::vector<ObjectFrameError> objects;

@@ -30,9 +30,9 @@ std::string kittiType(ObjectKind kind) {
   return "Misc";
 }
 
-/// KITTI ranks results by their score and asks for no scale. Ours is the probability that the object is there, times a
-/// share that grows with the points in which the object was seen: one half at kHalfSure_points, in a row with the
-/// fewest that are reported a third.
+/// KITTI ranks results by their score and defines no scale. Our score is the object's existence probability, times a
+/// share that grows with the number of its points. The share is one half at kHalfSure_points, and a third in a row with
+/// the fewest points that are reported.
 double scoreOf(const ObjectEstimate& object) {
   constexpr double kHalfSure_points = 6;
   return object.existence_probability * object.points / (object.points + kHalfSure_points);
@@ -45,7 +45,7 @@ Box inImage(const Box& box, const StereoCamera& camera) {
           std::clamp(box.right_px, 0.0, right_px), std::clamp(box.bottom_px, 0.0, bottom_px)};
 }
 
-/// A row with a cuboid as a label. `T_cam0_world` leads to the left gray camera, in which labels are given.
+/// Converts a row with a cuboid to a label. `T_cam0_world` leads to the left gray camera, the frame of labels.
 Label labelOf(const RunFolder::ObjectRow& row, const SE3& T_cam0_world, const StereoCamera& camera) {
   const ObjectBox& cuboid = *row.object.cuboid;
   const SE3 T_cam0_body = T_cam0_world * row.object.T_world_body;

@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// `rows`, `brier`, `largest_gap` and `tenths`; null for what cannot be told from so few rows. `hits` is the key of
-/// what the probability is of, such as "real".
+/// `rows`, `brier`, `largest_gap` and `tenths`; null for values that so few rows cannot tell. `hits` is the key of the
+/// probability's event, such as "real".
 nlohmann::ordered_json jsonOf(const Reliability& reliability, const char* hits);
 
 }  // namespace motorcade

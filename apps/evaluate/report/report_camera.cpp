@@ -15,7 +15,7 @@ void printCameraLine(std::string& text, const char* kind, const std::optional<Tr
         errors->rpe_m.rmse, errors->rpe_m.median, errors->rpe_deg.rmse, errors->rpe_deg.median, errors->are_deg.mean);
 }
 
-/// One of the two errors; which tells how many digits it needs.
+/// Column of one of the two errors, with its number of digits.
 struct SegmentColumn {
   double SegmentMeans::*error;
   const char* unit;
@@ -53,7 +53,7 @@ void printSegments(std::string& text, const Evaluation& e) {
   }
 }
 
-/// Prints how positions and velocities of the truth contradict each other.
+/// Prints the contradiction between positions and velocities of the truth.
 void printDoubt(std::string& text, const TruthCheck& check) {
   print(text, "doubt     positions and velocities of the truth contradict each other:\n");
   if (check.waysDiffer())

@@ -19,7 +19,7 @@ void printStatistics(std::string& text, const std::string& whose, const Statisti
   print(text, " %6.2f %6.2f %6.2f %6.2f %6.2f\n", deg.rmse, deg.mean, deg.median, deg.p95, deg.max);
 }
 
-/// Below the root mean squares, of which it is the mean.
+/// Prints the mean of the objects' root mean squares, which stand above it.
 void printObjectRms(std::string& text, const char* whose, const FollowedMotion& motion) {
   if (!motion.objects.empty()) print(text, "  %-21.21s  %7.3f %33s %6.2f\n", whose, motion.rms_m, "", motion.rms_deg);
 }

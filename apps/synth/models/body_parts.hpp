@@ -3,7 +3,7 @@
 #include "apps/synth/shapes/noise.hpp"
 #include "apps/synth/shapes/primitive.hpp"
 
-/// What people are made of, on foot and on a bicycle.
+/// Parts of people, on foot and on a bicycle.
 namespace motorcade::synth {
 
 /// A person's size and clothes. Lengths of the segments are shares of the height: Drillis and Contini, "Body segment
@@ -27,15 +27,15 @@ struct Body {
 };
 Body makeBody(std::uint32_t seed);
 
-/// Angles of a leg or an arm: how far its first segment is ahead of hanging down, how far the second one is bent back
-/// against the first (an arm's: ahead), and how far a foot's toes point down against the shin.
+/// Angles of a leg or an arm. `raised_rad` turns the first segment ahead from hanging down. `bent_rad` turns the second
+/// one back against the first, or ahead for an arm. `toes_down_rad` turns a foot's toes down against the shin.
 struct Pose {
   Vec3 joint;  // hip or shoulder
   double raised_rad = 0, bent_rad = 0, toes_down_rad = 0;
 };
 using PoseAt = std::function<Pose(double driven_m)>;
 
-/// From the hips up to the neck; arms and head are its limbs.
+/// The body from the hips up to the neck; arms and head are its limbs.
 Model makeTrunk(const Body& body);
 /// Origin at the neck.
 Model makeHead(const Body& body, bool helmet);

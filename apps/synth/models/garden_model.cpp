@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
-/// Gusts that a tree yields to and the tremor of one of its branches.
+/// Gusts that bend a tree, and the tremor of one of its branches.
 struct Wind {
   double reach_m, towards_rad, gust_rad, tremor_rad;
 

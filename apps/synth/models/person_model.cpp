@@ -15,7 +15,7 @@ double phaseOf_rad(const Body& body, double driven_m, bool left) {
   const double strides = driven_m / (kStride * static_cast<double>(body.height));
   return 2 * std::numbers::pi * strides + (left ? 0 : std::numbers::pi);
 }
-/// Who stands keeps the legs together; the first half meter leads into the full step.
+/// Share of the full step: zero when standing with the legs together, one after half a meter.
 double swing(double driven_m) { return std::clamp(driven_m / 0.5, 0.0, 1.0); }
 
 /// Hip and knee over a stride: the leg swings ahead while the sine rises, and bends while it passes the other one.
@@ -39,7 +39,7 @@ double reachDown_m(const Body& b, const Pose& leg) {
   return -ankle - std::min(z(foot, b.heel(), -b.foot()), z(foot, b.toe(), -b.foot()));
 }
 
-/// The hips are as high as lets the lower foot touch the ground.
+/// Height of the hips at which the lower foot touches the ground.
 float hipHeight(const Body& body, double driven_m) {
   return static_cast<float>(
       std::max(reachDown_m(body, legAt(body, driven_m, true)), reachDown_m(body, legAt(body, driven_m, false))));

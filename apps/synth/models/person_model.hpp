@@ -5,7 +5,7 @@
 
 namespace motorcade::synth {
 
-/// Someone who walks: legs and arms swing with the way covered. Size, clothes and bags follow the seed.
+/// A person who walks: legs and arms swing with the distance covered. Size, clothes and bags follow the seed.
 Model makePedestrian(std::uint32_t seed);
 
 }  // namespace motorcade::synth

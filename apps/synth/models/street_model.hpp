@@ -3,7 +3,7 @@
 #include "apps/synth/shapes/noise.hpp"
 #include "apps/synth/shapes/primitive.hpp"
 
-/// What stands along a street. Origins are on the ground; x runs along the street.
+/// Objects along a street. Origins are on the ground; x runs along the street.
 namespace motorcade::synth {
 
 Model makeBuilding(float length_m, float depth_m, float height_m, std::uint32_t seed);

@@ -22,7 +22,7 @@ Vec3 pedalAt(double driven_m, bool left) {
                                kCrank_m * static_cast<float>(std::cos(angle))};
 }
 
-/// The saddle is as high as nearly stretches the leg at the lowest pedal.
+/// The hips above the saddle, whose height nearly stretches the leg at the lowest pedal.
 Vec3 hipOf(const Body& b) {
   const float up = 0.965F * (b.thigh() + b.shin()) + b.foot() - kCrank_m;
   return {kBottomBracket.x - 0.15F, 0, kBottomBracket.z + up};

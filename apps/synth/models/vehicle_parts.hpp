@@ -5,7 +5,7 @@
 #include "apps/synth/shapes/noise.hpp"
 #include "apps/synth/shapes/primitive.hpp"
 
-/// What vehicles of all kinds have.
+/// Parts that vehicles of all kinds have.
 namespace motorcade::synth {
 
 /// Measures and colors shared by a vehicle's parts.

@@ -22,7 +22,7 @@ struct ImageBox {
   }
 };
 
-/// Box of a convex hull's projection; where the hull passes the image plane, of what is ahead of it.
+/// Includes the box of a convex hull's projection. If the hull passes the image plane, only its part ahead counts.
 void includeHull(ImageBox& box, const std::vector<Eigen::Vector3d>& hull, const StereoCamera& camera) {
   constexpr double kNear_m = 0.05;
   const bool cut = std::any_of(hull.begin(), hull.end(), [](const auto& p) { return p.z() < kNear_m; });
@@ -49,7 +49,7 @@ ImageBox projectedBox(std::span<const Placed> object, const SE3& T_cam_map, cons
   return box;
 }
 
-/// Share of a grid of points in the object's box that the image does not show.
+/// Share of a grid of points in the object's box that lies outside of the image.
 double truncationOf(const Model& model, const SE3& T_cam_body, const StereoCamera& camera) {
   constexpr int kLong = 16, kWide = 6, kHigh = 5;
   int outside = 0;

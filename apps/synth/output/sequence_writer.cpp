@@ -41,7 +41,7 @@ CalibrationErrors drawnErrors(const Scene& scene, const RigError& rig) {
   return errors;
 }
 
-/// The right camera as it really is in a frame: it lies elsewhere, and its principal point, than the calibration says.
+/// The true right camera of a frame. Its position and its principal point differ from the calibration's.
 StereoCamera rightCamera(const Scene& scene, int frame, const WriteOptions& options) {
   constexpr int kShake = 4219, kBaseline = 6;  // in the order of the errors
   StereoCamera camera = options.camera;

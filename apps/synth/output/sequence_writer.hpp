@@ -12,8 +12,8 @@ namespace motorcade::synth {
 struct RigError {
   double disparity_offset_px = 0;  // true minus measured disparity: the right image's content lies too far right
   double row_offset_px = 0;        // the right image's content lies too low
-  /// Constant errors drawn with the scene's seed, normal with so many times the standard deviations of a rig that was
-  /// calibrated with care (CalibrationSigmas).
+  /// Scale of constant errors that are drawn with the scene's seed from a normal distribution. At 1 they have the
+  /// standard deviations of a rig that was calibrated with care (CalibrationSigmas).
   double calibration = 0;
   double shake_px = 0;  // standard deviation of an error that all disparities of a pair share
 
@@ -31,8 +31,8 @@ struct WriteOptions {
 };
 
 /// Renders a scene into a folder in the plain KITTI layout, ground truth included. Calibration and truth are those of
-/// the camera without the rig's error. The calibration tells that it is exact where it is.
-/// Throws OutputError, naming the file, when something cannot be written.
+/// the camera without the rig's error. The calibration states where it is exact. Throws OutputError, naming the file,
+/// when something cannot be written.
 void writeSequence(const Scene& scene, const std::filesystem::path& folder, const WriteOptions& options);
 
 }  // namespace motorcade::synth

@@ -5,7 +5,7 @@
 
 #include "apps/synth/shapes/vec3.hpp"
 
-/// The style `film`: its textures, and what its lens and its film do to images.
+/// The style `film`: its textures, and the effects of its lens and its film on images.
 namespace motorcade::synth {
 
 /// Reflectance of a surface whose grain is veins instead of lumps, with less contrast at large. `strength` is that of

@@ -8,7 +8,7 @@ namespace motorcade::synth {
 LensErrors::LensErrors(const StereoCamera& camera, StereoSide side, const CalibrationErrors& errors)
     : camera_(camera), side_(side), errors_(errors.data()) {}
 
-/// Observations of a point far away: what the right camera adds to the left one's errors is that of the disparity.
+/// Uses observations of a point far away: the right camera's error beyond the left one's is that of the disparity.
 LensErrors::Pixel LensErrors::exact(float u_px, float v_px) const {
   if (errors_.isZero()) return {u_px, v_px};
   const Eigen::Vector3d shift = observationShifts(camera_, CalibrationSigmas{}, {u_px, v_px, 0}) * errors_;

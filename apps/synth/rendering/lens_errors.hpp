@@ -10,7 +10,7 @@ namespace motorcade::synth {
 /// Errors of a rig's calibration, each in its standard deviations, in the order of the columns of ObservationShifts.
 using CalibrationErrors = std::array<double, kCalibrationErrors>;
 
-/// The rays of a camera with errors: each of its pixels takes that of another pixel of a camera without.
+/// The rays of a camera with errors: each of its pixels takes that of another pixel of a camera without errors.
 class LensErrors {
  public:
   struct Pixel {
@@ -19,7 +19,7 @@ class LensErrors {
   LensErrors(const StereoCamera& camera, StereoSide side, const CalibrationErrors& errors);
 
   Pixel exact(float u_px, float v_px) const;
-  /// The most by which such a pixel lies outside of the image.
+  /// Largest distance of such a pixel outside of the image.
   float beyond_px() const;
 
  private:

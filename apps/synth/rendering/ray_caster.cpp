@@ -96,8 +96,8 @@ bool RayCaster::sunny(const Vec3& position, const Vec3& normal) const {
   return sunlight_ > 0 && dot(normal, frame_.scene().sun) > 0 && !to_sun_.occluded(position, 60);
 }
 
-/// Under a car little of the sky is seen. The rays start on the ground itself, which is no obstacle, so that tires
-/// shade where they stand.
+/// Exposure of a ground point. Little of the sky is seen under a car. The rays start on the ground itself, which is no
+/// obstacle, so that tires shade the ground they stand on.
 Exposure RayCaster::exposureOf(const Ground::Hit& hit, const Vec3& position) const {
   const bool sun = sunny(position, hit.normal);
   return {sun, !sun && hit.t < 60 && upwards_.occluded(position, 1.05F)};
@@ -131,7 +131,7 @@ float RayCaster::shade(const RayHit& hit, const Vec3& normal, const Ray& ray, co
   return light;
 }
 
-/// What smooth paint mirrors. Panels bulge: the normal leans outwards from the middle of the part.
+/// Light mirrored by smooth paint. Panels bulge: the normal leans outwards from the middle of the part.
 float RayCaster::surroundings(const RayHit& hit, const Vec3& normal, const Ray& ray) const {
   constexpr float kBulge = 0.16F;  // tangent of the lean at the rim: some 9 degrees
   const Vec3 middle = (hit.part->lo + hit.part->hi) * 0.5F, half = (hit.part->hi - hit.part->lo) * 0.5F;
@@ -154,7 +154,7 @@ float RayCaster::mirrored(const Ray& ray, float t, const Vec3& normal) const {
   return sampleOf(next, tree_->firstHit(next.origin, next.direction, t_max), {}).light;
 }
 
-/// A rough mirror: smears along the direction of view what it shows.
+/// Light of a rough mirror, which smears its image along the direction of view.
 float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roughness) const {
   const Vec3 view = normalized(ray.direction);
   float light = 0;
@@ -163,7 +163,7 @@ float RayCaster::smeared(const Ray& ray, float t, const Vec3& normal, float roug
   return light / static_cast<float>(kWaterSpread.size());
 }
 
-/// Water makes the ground darker, and mirrors more the flatter it is looked at.
+/// Light from wet ground. Water darkens the ground, and mirrors more at flatter angles.
 float RayCaster::wet(const Ground::Hit& hit, const Ray& ray, const Lit& dry) const {
   const WaterFilm film = waterFilm(hit, ray.width_m(hit.t), frame_.scene(), frame_.frame());
   const float dark = dry.reflectance * dry.light * film.darkening;

@@ -9,13 +9,13 @@
 
 namespace motorcade::synth {
 
-/// Whether the sun reaches a point, and on the ground whether something low hangs over it.
+/// Exposure of a point to the sun, and on the ground its cover by something low above it.
 struct Exposure {
   bool sunny = false, covered = false;
   bool operator==(const Exposure&) const = default;
 };
 
-/// What comes back along a ray.
+/// Light, depth and surface seen along a ray.
 struct Sample {
   float light = 0;    // linear
   float depth_m = 0;  // 0: sky
@@ -23,7 +23,7 @@ struct Sample {
   std::int16_t object = -1;
   Exposure exposure;
 };
-/// Road, or what lies beside it behind the curb.
+/// True for the road and for the ground beside it behind the curb.
 bool isLevelGround(std::uint32_t surface);
 
 /// Casts rays of one camera of the stereo pair into one frame.
@@ -32,8 +32,8 @@ class RayCaster {
   RayCaster(const FrameScene& frame, const StereoCamera& camera, StereoSide side, Style style,
             const CalibrationErrors& errors);
 
-  /// `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. An exposure that is known
-  /// already, from the pixel and its neighbors, saves the rays towards the light.
+  /// Casts a ray. `sharpness` over 1 narrows the texture filter, for rays that cover less than a pixel. A known
+  /// exposure, from the pixel and its neighbors, saves the rays towards the light.
   Sample cast(float u_px, float v_px, float sharpness, const std::optional<Exposure>& known) const;
 
  private:

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t kLeafItems = 4;
 constexpr std::size_t kMaxDepth = 64;  // halves of halves: far more than any number of items needs
 
-/// Where a ray enters a box; beyond `limit` if it does not.
+/// Ray parameter at which a ray enters a box; beyond `limit` if it does not.
 float entry(const Vec3& lo, const Vec3& hi, const Vec3& origin, const Vec3& inverse, float limit) {
   float enter = 0, leave = limit;
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,7 +10,7 @@ namespace motorcade::synth {
 class RayTree {
  public:
   explicit RayTree(const FrameScene& frame);
-  /// What the ray meets first before t_max.
+  /// The first item that the ray meets before t_max.
   std::optional<RayHit> firstHit(const Vec3& origin, const Vec3& direction, float t_max) const;
 
  private:

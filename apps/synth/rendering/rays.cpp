@@ -19,8 +19,8 @@ std::uint32_t faceOf(const Vec3& n) {
   return step(n.x) + 5 * step(n.y) + 25 * step(n.z);
 }
 
-/// The numbers u for which the plane x = u z touches the ellipsoid with center (x, z) and second moments xx, xz, zz,
-/// half their difference and their middle: (x - u z)^2 = xx - 2 u xz + u^2 zz.
+/// The numbers u for which the plane x = u z touches the ellipsoid: (x - u z)^2 = xx - 2 u xz + u^2 zz. Its center is
+/// (x, z), its second moments are xx, xz, zz. Stored are half their difference and their middle.
 struct Tangents {
   float middle, half;
 };

@@ -11,7 +11,7 @@ namespace motorcade::synth {
 
 enum class StereoSide { kLeft, kRight };
 
-/// What a ray meets first.
+/// The first point that a ray meets.
 struct RayHit {
   float t = 0;
   const Placed* placed = nullptr;
@@ -23,18 +23,18 @@ struct RayHit {
 struct RayRange {
   float from = 0, to = 0;
 };
-/// Where a ray, given in the axes of the item's thing, meets the item.
+/// Point where a ray meets the item; the ray is in the axes of the item's thing.
 std::optional<RayHit> hitPart(const FrameScene& frame, std::uint32_t item, const Vec3& origin_body,
                               const Vec3& direction_body, const RayRange& range);
 
 /// The rays of one camera of the stereo pair into a frame.
 class CameraRays {
  public:
-  /// Rays are asked for where a camera without errors would have them, up to `beyond_px` outside of its image.
+  /// Takes rays of a camera without errors, up to `beyond_px` outside of its image.
   CameraRays(const FrameScene& frame, const StereoCamera& camera, StereoSide side, float beyond_px = 0);
 
   const Vec3& origin() const { return origin_; }
-  /// Has unit depth along the optical axis, so that a ray's parameter is the depth.
+  /// A direction of unit depth along the optical axis, so that a ray's parameter is the depth.
   Vec3 direction(float u_px, float v_px) const {
     return ahead_ + right_ * ((u_px - cx_px_) * pixel_x_) + down_ * ((v_px - cy_px_) * pixel_y_);
   }

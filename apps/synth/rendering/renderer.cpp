@@ -68,7 +68,7 @@ Sensor sensorOf(const FrameScene& frame, StereoSide side, const RenderOptions& o
   return {different ? 1.02F : 1.0F, different ? -1.5F : 0.0F, options.noise_levels, seed};
 }
 
-/// What a pixel needs besides the ray through its center.
+/// Rays that a pixel needs besides the one through its center.
 struct Refinement {
   std::size_t rays = 0;
   std::optional<Exposure> exposure;  // where the neighbors have it too

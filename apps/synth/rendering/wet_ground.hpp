@@ -13,7 +13,7 @@ struct WaterFilm {
   float roughness = 0;  // standard deviation of its slope
   Vec3 normal{};
 };
-/// Rain on road and pavement at one frame: a thin rough film, puddles in the hollows, rings of drops in them that
+/// Rain on road and pavement in one frame: a thin rough film, puddles in the hollows, rings of drops in them that
 /// differ from frame to frame. `width_m` is that of a pixel across the ray.
 WaterFilm waterFilm(const Ground::Hit& hit, float width_m, const Scene& scene, int frame);
 

@@ -5,7 +5,7 @@
 namespace motorcade::synth {
 
 /// A drive behind a car on a winding street, seen over the own bonnet: dark, curved, with a soft reflection of the
-/// world that passes.
+/// passing world.
 void buildBonnet(SceneBuilder& b);
 
 }  // namespace motorcade::synth

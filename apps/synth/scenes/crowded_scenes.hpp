@@ -7,7 +7,7 @@ namespace motorcade::synth {
 
 /// Fifty vehicles on a road of nine lanes.
 void buildCrowd(SceneBuilder& b);
-/// Waits at a junction where trucks with trailers pass right ahead, from edge to edge of the view.
+/// A stop at a junction where trucks with trailers pass right ahead, from edge to edge of the view.
 void buildTruck(SceneBuilder& b);
 /// Buses ahead and on both sides: two thirds of the view move.
 void buildWalledIn(SceneBuilder& b);

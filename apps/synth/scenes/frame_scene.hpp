@@ -45,7 +45,7 @@ class FrameScene {
   static bool meets(std::span<const Placed> thing, const Vec3& direction);
 
  private:
-  /// Completes what has a model, pose and id, and adds it with its limbs.
+  /// Completes a thing that has a model, pose and id, and adds it with its limbs.
   void place(Placed placed, double driven_m);
 
   const Scene* scene_;

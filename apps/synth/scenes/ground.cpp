@@ -9,7 +9,7 @@ constexpr float kCrosswalkHalf_m = 1.6F;
 
 }  // namespace
 
-/// How the pixel lies on the ground: long in the direction of view, narrow across.
+/// Footprint of the pixel on the ground: long in the direction of view, narrow across.
 struct Ground::View {
   float x, y;                     // direction of view on the ground
   float length, width;            // of the pixel's footprint

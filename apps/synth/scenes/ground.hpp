@@ -20,11 +20,11 @@ class Ground {
     Vec3 position_map;
     bool curb_face = false;
   };
-  /// No ray meets the ground later than where it crosses the road's plane.
+  /// Largest parameter at which a ray can meet the ground: its crossing of the road's plane.
   float farthest(const Vec3& origin, const Vec3& direction) const {
     return direction.z > -kLevel ? 1e30F : (-camera_z_m_ - origin.z) / direction.z;
   }
-  /// Where a ray from the camera meets the ground, before t_max.
+  /// Point where a ray from the camera meets the ground, before t_max.
   std::optional<Hit> hit(const Vec3& origin, const Vec3& direction, float t_max) const;
   /// Reflectance at a hit, dry; `width_m` is that of a pixel across the ray.
   float reflectance(const Hit& hit, const Vec3& direction, float width_m) const;

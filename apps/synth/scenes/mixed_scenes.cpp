@@ -16,7 +16,7 @@ constexpr double kPavement_m = 1.95;  // from the curb to where people walk, bet
 
 double jitter(SceneBuilder& b, float reach) { return b.random.uniform(-reach, reach); }
 
-/// Someone who walks along the straight first road, `left_m` from its middle; negative speeds lead backwards.
+/// Adds a person who walks along the straight first road, `left_m` from its middle; negative speeds lead backwards.
 void addWalker(SceneBuilder& b, double x_m, double left_m, double speed_mps) {
   constexpr double kWay_m = 40;
   const double x = x_m + jitter(b, 1), ahead = speed_mps > 0 ? 1 : -1;
@@ -116,7 +116,7 @@ void buildPeople(SceneBuilder& b) {
   b.setRoads({main_street, street(side_street)});
   b.setEgo(
       drive(path, kRoadBehind_m, Profile({{0, 4.5}, {1.5, 4.5}, {5, 1.0}, {8.5, 1.0}, {12, 4.5}}), -0.5 * kLane_m));
-  // Those who cross go in lanes of their own.
+  // People who cross walk in lanes of their own.
   const auto cross = [&](double x_m, double from_m, double start_s, double speed_mps) {
     const double speed = vary(b.random, speed_mps, 0.03);
     b.addPedestrian({kCrosswalk_m + x_m, from_m}, {kCrosswalk_m + x_m, -from_m},

@@ -19,7 +19,7 @@ struct Road {
   std::vector<double> crosswalks_m{};  // arc lengths where people cross, between bars of paint
 };
 
-/// Where a ground point lies on the roads.
+/// Position of a ground point on the roads.
 struct RoadPosition {
   int road = -1;                   // the road it is deepest inside of or nearest to; -1 far from all
   float along_m = 0;               // arc length on that road

@@ -19,7 +19,7 @@ struct Fixture {
   int id = -1;
 };
 
-/// A vehicle in traffic, or someone on foot.
+/// A vehicle in traffic, or a person on foot.
 struct Mover {
   std::shared_ptr<const Model> model;
   Trajectory trajectory;

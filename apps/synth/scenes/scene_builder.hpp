@@ -9,7 +9,7 @@
 
 namespace motorcade::synth {
 
-/// How the sides of a road look.
+/// Appearance of the sides of a road.
 struct Dressing {
   double from_m = 0, to_m = 0;  // stretch of the road
   double clear_m = 4;           // width of the pavement before the first wall or hedge
@@ -33,15 +33,15 @@ class SceneBuilder {
   void addMover(Model model, Trajectory trajectory);
   /// Two objects: the truck drives as given, its trailer follows on the same path.
   void addTruckWithTrailer(const Trajectory& trajectory);
-  /// Someone who walks straight from one point of the map to another, up and down the curbs on the way.
+  /// Adds a person who walks straight from one point of the map to another, up and down the curbs on the way.
   void addPedestrian(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Profile speed_mps);
   void addParked(VehicleKind kind, int road, double along_m, double left_m, bool backwards,
                  Finish finish = Finish::kAny);
-  /// Places a thing beside a road, unless it would stand nearer than the margin to any road. Above a margin of 1 m its
-  /// whole footprint counts, below its middle alone.
+  /// Places a thing beside a road, unless it would stand nearer than the margin to any road. With a margin above 1 m
+  /// its whole footprint counts, else its middle alone.
   void place(Model model, int road, double along_m, double left_m, double turn_rad, double margin_m);
-  /// Houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road and of where
-  /// people cross.
+  /// Adds houses, trees, poles, fences and parked cars along both sides of a road, clear of every other road and of
+  /// crosswalks.
   void dress(int road, const Dressing& dressing);
 
  private:

@@ -2,7 +2,7 @@
 
 #include "apps/synth/scenes/scene_builder.hpp"
 
-/// What scenes are written with. Right-hand traffic; paths run along the map's x axis unless they bend.
+/// Parts from which scenes are composed. Right-hand traffic; paths run along the map's x axis unless they bend.
 namespace motorcade::synth {
 
 using PathPtr = std::shared_ptr<const Path>;

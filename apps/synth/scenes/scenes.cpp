@@ -85,7 +85,7 @@ void buildUrban(SceneBuilder& b) {
              drive(turn, 60 + 15, Profile({{0, v + 0.4}, {1.2, v + 0.4}, {4, 6.8}, {6.5, 6.8}, {9, v + 1}}), 0));
   b.addMover(VehicleKind::kCar, drive(main_street, 60 + 62, vary(b.random, 10, 0.05), 1.75, true));
   b.addMover(VehicleKind::kVan, drive(main_street, 60 + 82, vary(b.random, 10, 0.05), 1.75, true));
-  // These two wait for those who turn.
+  // These two wait for the cars that turn.
   b.addMover(VehicleKind::kCar, drive(side_street, 120 + 64, Profile({{0, 8.5}, {3, 8.5}, {6.5, 0}}), 1.75, true));
   b.addMover(VehicleKind::kCar, drive(side_street, 120 + 97, Profile({{0, 9}, {5, 9}, {9, 0}}), 1.75, true));
   b.dress(0, {.from_m = 30, .to_m = 260, .parked_share = 0.45});

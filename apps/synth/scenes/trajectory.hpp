@@ -9,8 +9,8 @@ namespace motorcade::synth {
 
 struct Model;
 
-/// How something moves: along a path, at a speed and a lateral offset that ease between knots. Twice continuously
-/// differentiable. The frame `map` is the scene's: z up, ground at z = 0.
+/// Motion along a path, at a speed and a lateral offset that ease between knots. Twice continuously differentiable. The
+/// frame `map` is the scene's: z up, ground at z = 0.
 struct Trajectory {
   std::shared_ptr<const Path> path;
   double start_m = 0;      // arc length at time 0
@@ -29,7 +29,7 @@ struct Trajectory {
   SE3 T_map_body(double t_s) const;
 };
 
-/// The car that carries the camera: its trajectory plus what the suspension does, a few mm and tenths of a degree.
+/// The car that carries the camera: its trajectory plus the motion of its suspension, a few mm and tenths of a degree.
 struct Ego {
   Trajectory trajectory;
   double camera_height_m = 1.65;

@@ -10,7 +10,7 @@
 
 namespace motorcade::synth {
 
-/// What an item covers of a family of rays that all cross one plane (from one point, or parallel): a rectangle of the
+/// Extent of an item for a family of rays that all cross one plane (from one point, or parallel): a rectangle of the
 /// plane, and a range along the rays.
 struct Covered {
   float left = 1e30F, top = 1e30F, right = -1e30F, bottom = -1e30F;
@@ -27,8 +27,9 @@ struct Covered {
   }
 };
 
-/// Items by where they cover the plane of a family of rays: square cells with a list each, near items first, four
-/// tested at once. Leave out items that cover no point of `area`; a ray through a point outside of it is slower.
+/// A grid of items by the area that they cover in the plane of a family of rays. Square cells have a list each, near
+/// items first, of which four are tested at once. Items that cover no point of `area` are left out; a ray through a
+/// point outside of it is slower.
 class ItemGrid {
  public:
   struct Area {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Band-limited procedural signals. Each takes the footprint of the pixel on the surface [m] and leaves out what is
-/// finer.
+/// Band-limited procedural signals. Each takes the footprint of the pixel on the surface [m] and leaves out finer
+/// detail.
 namespace motorcade::synth {
 
 inline std::uint32_t mix(std::uint32_t x) {

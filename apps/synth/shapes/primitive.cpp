@@ -123,7 +123,7 @@ std::optional<SurfaceHit> intersectRing(const Primitive& part, const Vec3& o, co
   return SurfaceHit{hit->t + on, normalized(inwards)};
 }
 
-/// Where three planes meet, if they do.
+/// Common point of three planes, if there is one.
 std::optional<Vec3> corner(const Cut& a, const Cut& b, const Cut& c) {
   const auto cross = [](const Vec3& u, const Vec3& v) {
     return Vec3{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};

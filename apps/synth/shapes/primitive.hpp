@@ -68,10 +68,10 @@ struct Primitive {
 
 struct Model;
 
-/// Something rigid that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes. The branches of a
-/// tree in wind are given the time in place of the way.
+/// A rigid part that turns on a thing as the thing moves on: a leg, a crank, a wheel with spokes. The branches of a
+/// tree in wind take the time in place of the distance.
 struct Limb {
-  /// Where its origin, the joint, is, and how far it has turned about the y axis, from z towards x.
+  /// Position of its origin, the joint, and its angle about the y axis, from z towards x.
   struct Pose {
     Vec3 joint;
     double angle_rad = 0;
@@ -97,7 +97,7 @@ struct Model {
   Primitive& addCylinder(Material material, int axis, const Vec3& lo, const Vec3& hi, float tone,
                          std::uint32_t seed = 0);
   Primitive& addEllipsoid(Material material, const Vec3& center, const Vec3& radii, float tone, std::uint32_t seed = 0);
-  /// Cuts the block that was added last by the plane through `point`; what `normal` points to goes away.
+  /// Cuts the block that was added last by the plane through `point`; the side to which `normal` points is removed.
   void cutLast(const Vec3& normal, const Vec3& point);
   /// A square bar in a plane of constant y.
   Primitive& addBar(Material material, const Vec3& from, const Vec3& to, float thickness, float tone);

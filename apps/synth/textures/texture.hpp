@@ -4,7 +4,7 @@
 
 namespace motorcade::synth {
 
-/// What a ray meets on a part, in its model's frame.
+/// A surface point of a part that a ray meets, in its model's frame.
 struct SurfacePoint {
   const Primitive* part = nullptr;
   const Model* model = nullptr;
@@ -13,7 +13,7 @@ struct SurfacePoint {
   float wheel_angle_rad = 0;  // how far the vehicle's wheels have turned
 };
 
-/// How a surface answers to light.
+/// Response of a surface to light.
 struct Reflectance {
   float diffuse = 0.5F;
   float mirror = 0;  // share of the sky seen as in a mirror

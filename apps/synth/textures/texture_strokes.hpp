@@ -3,7 +3,7 @@
 #include "apps/synth/shapes/noise.hpp"
 #include "apps/synth/shapes/primitive.hpp"
 
-/// What the textures of several kinds of vehicles draw with.
+/// Strokes that the textures of several kinds of vehicles share.
 namespace motorcade::synth {
 
 /// A thin line at `at`.

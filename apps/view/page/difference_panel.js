@@ -1,9 +1,9 @@
-// Two runs of one drive in the same frame: how far apart they are, and how far each is from the truth.
+// Two runs of one drive in the same frame: their distance from each other, and each run's from the truth.
 
 const element = (id) => document.getElementById(id);
 const kNear_m = 3;  // two estimates of one object are closer
 
-// Between two poses, by the sine, which is exact for small angles where the cosine is not.
+// Angle between two poses by its sine, which is exact for small angles, unlike the cosine.
 function angle_deg(A, B) {
   const turn = (i, j) => [0, 4, 8].reduce((sum, row) => sum + A[row + i] * B[row + j], 0);  // of A's inverse times B
   const sine = Math.hypot(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) / 2;
@@ -17,7 +17,7 @@ const seen = (T, p) => {
   return [0, 1, 2].map((i) => T[i] * d[0] + T[4 + i] * d[1] + T[8 + i] * d[2]);
 };
 
-// Objects of both runs that are the same by their place as their camera sees it, the closest first.
+// Objects of both runs that are at the same position as seen from their cameras, the closest first.
 export function sameObjects(a, b) {
   const pairs = a.objects.flatMap((mine) => b.objects.map((theirs) =>
     ({ mine, theirs, apart: distance(seen(a.T, mine.center), seen(b.T, theirs.center)) })));

@@ -1,4 +1,4 @@
-// The frame that is shown, and the object that is chosen, as they stand behind `#` in the page's address.
+// The shown frame and the chosen object, as encoded behind `#` in the page's address.
 
 const kQuiet_ms = 250;  // browsers refuse addresses that change with every frame
 
@@ -8,8 +8,8 @@ function whole(text) { return /^\d{1,12}$/.test(text ?? "") ? Number(text) : nul
 
 export function readLink() { return { frame: whole(here().get("frame")), object: whole(here().get("object")) }; }
 
-// The printed address brings a token behind `#`, which is sent to nobody. It is kept for this tab, and taken out of the
-// address, so that a link that is passed on does not hold the run.
+// The printed address has a token behind `#`, which browsers do not transmit. It is kept for this tab and removed from
+// the address, so that a shared link cannot hold the run.
 export function takeToken() {
   const params = here(), token = params.get("token");
   try {
@@ -34,7 +34,7 @@ export class FrameLink {
 
   text(frame, object) { return `#frame=${frame}${object === null ? "" : `&object=${object}`}`; }
 
-  // A jump can be gone back from; what only moves on replaces the address, once it rests.
+  // A jump gets an entry in the history; steps replace the address, once they pause.
   write(frame, object, jump = false) {
     clearTimeout(this.due);
     const text = this.text(frame, object);
@@ -46,7 +46,7 @@ export class FrameLink {
     const text = new URL(this.text(frame, object), location.href).href;
     try {
       await navigator.clipboard.writeText(text);
-    } catch {  // not where the page is served to other machines without encryption
+    } catch {  // fails where the page is served to other machines without encryption
       const field = document.createElement("textarea");
       field.value = text;
       document.body.append(field);

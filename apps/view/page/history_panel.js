@@ -1,5 +1,5 @@
-// Speed, acceleration, yaw rate and distance of one object over time, each with the band of one standard deviation; while
-// none is chosen, those of the camera, whose acceleration is not told. A dot stands at the frame that is shown.
+// Speed, acceleration, yaw rate and distance of one object over time, each with a band of one standard deviation. While
+// none is chosen they are the camera's, whose acceleration is not known. A dot marks the shown frame.
 
 const kDegrees = 180 / Math.PI;
 const kQuantities = {
@@ -10,8 +10,8 @@ const kQuantities = {
 };
 const kAround = 2;  // frames before and after, over which the camera's speed is taken
 
-// The camera as if it were an object: its speed over the ground, how fast it turns to the left, how far it has come.
-// `driven` is how far it had come by the first of these frames.
+// The camera as if it were an object: its speed over the ground, its yaw rate to the left, its distance so far.
+// `driven` is that distance in the first of these frames.
 function cameraRows(frames, driven) {
   return frames.flatMap((frame, i) => {
     if (i > 0) driven += Math.hypot(...[3, 7, 11].map((k) => frame.T[k] - frames[i - 1].T[k]));
@@ -60,7 +60,7 @@ export class HistoryPanel {
     }
   }
 
-  // `frames` around the one that is shown, or up to it, and how far the camera had come by the first of them.
+  // `frames` around the shown one, or up to it, and the camera's distance so far in the first of them.
   show(id, shown, frames, driven) {
     const rows = id === null ? cameraRows(frames, driven) : frames.flatMap(({ frame, time, objects }) => {
       const object = objects.find((o) => o.id === id);

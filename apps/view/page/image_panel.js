@@ -19,7 +19,7 @@ export function cuboidCorners(object) {
     [0, 1, 2].map((axis) => center[axis] + (i >> axis & 1 ? 0.5 : -0.5) * size[axis])));
 }
 
-// Pairs of corners, and whether the cuboid itself hides the edge.
+// Edges as pairs of corners, each with a flag that the cuboid itself hides it.
 function edges(object, frame) {
   const eye = frame.T.filter((_, i) => i % 4 === 3);
   const T = object.T, { center, size } = object.cuboid;
@@ -148,7 +148,7 @@ export class ImagePanel {
     context.globalAlpha = 1;
   }
 
-  // A labeled object, dashed in white on black, so that it is seen on any ground; what stands, fainter.
+  // A labeled object, dashed in white on black, so that it is visible on any ground; standing ones are fainter.
   drawTruth(object, px) {
     const { context } = this, opacity = object.moving ? 1 : 0.45;
     context.strokeStyle = "#0d1014";

@@ -3,7 +3,7 @@
 const kMargin = 16;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// Points on the ground of a path of x, y, z, x, y, z, ...
+// Ground points of a path given as x, y, z, x, y, z, ...
 function ground(path) {
   const points = [];
   for (let i = 0; i + 2 < path.length; i += 3) points.push([path[i], path[i + 2]]);
@@ -23,7 +23,7 @@ export class MapPanel {
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.drawStill());
   }
 
-  // `paths`: of the name, color, points and first frame; that of the run itself comes first. `marks`: frames to point out.
+  // `paths` have a name, color, points and first frame; the run's own comes first. `marks` are frames to point out.
   set(paths, marks) {
     this.paths = paths.map((path) => ({ ...path, points: ground(path.path) }));
     this.marks = marks;
@@ -39,7 +39,7 @@ export class MapPanel {
     this.draw();
   }
 
-  // The longer way lies across: as on a map, or with the first camera's view to the right.
+  // The longer side lies across: as on a map, or with the first camera's view to the right.
   layOut(width, height) {
     const all = this.paths.flatMap(({ points }) => points);
     const low = [0, 1].map((i) => all.reduce((a, p) => Math.min(a, p[i]), Infinity));

@@ -1,4 +1,4 @@
-// The objects of the frame that is shown; where there is truth, with how far each is from it.
+// The objects of the shown frame; where there is truth, each with its distance from it.
 
 const element = (id) => document.getElementById(id);
 const text = (value, digits) => (value === undefined || value === null ? "" : value.toFixed(digits));
@@ -22,7 +22,7 @@ export class ObjectsPanel {
     this.showMissed(frame);
   }
 
-  // Where nothing moves, the way to the next object.
+  // A link to the next object, where nothing moves.
   showNone(frame, objects, tracks) {
     element("no-objects").hidden = objects.length > 0;
     element("objects").hidden = objects.length === 0;

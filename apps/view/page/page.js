@@ -1,4 +1,4 @@
-// Joins the panels: which frame is shown, which object is chosen, what the buttons and keys do.
+// Connects the panels: the shown frame, the chosen object, the buttons and keys.
 import { DifferencePanel } from "/difference_panel.js";
 import { FrameLink, readLink } from "/frame_link.js";
 import { HistoryPanel } from "/history_panel.js";
@@ -64,7 +64,7 @@ function showObjects(past) {
   map.show(frame, truthOn);
 }
 
-// What else stands in the scene: the true path around this frame, and the other run up to it.
+// Further paths of the scene: the true one around this frame, and the other run's up to it.
 function extraOf(frame, other) {
   const part = ({ path }, first, behind, ahead) => path.slice(3 * Math.max(0, frame - first - behind), 3 * Math.max(0, frame - first + ahead + 1));
   const truth = data.overview?.truth;
@@ -148,7 +148,7 @@ function showButtons() {
   element("newest").disabled = data.following;
 }
 
-// Of a run that is over, the page itself is the player.
+// The page itself plays a run that is over.
 function play(on) {
   if (playing && !on) link.write(data.shown, chosen);
   playing = on;
@@ -185,7 +185,7 @@ function goTo(number, { linked = false, jump = false } = {}) {
   showButtons();
 }
 
-// Where going back leads to where one was.
+// Makes the browser's back button return to the previous position.
 function jumpTo(number, object = chosen) {
   chosen = object ?? chosen;
   goTo(number, { jump: true });
@@ -200,7 +200,7 @@ function step(by) {
   goTo(data.shown + by);
 }
 
-// What a focused slider or button does with a key itself.
+// Keys that a focused slider or button handles itself.
 const kOwnKeys = { button: [" ", "Enter"], input: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"] };
 
 function keyPressed(event) {
@@ -250,7 +250,7 @@ function listen() {
   document.addEventListener("keydown", keyPressed);
 }
 
-// What only some runs have.
+// Panels that only some runs have.
 function showParts() {
   const hasTruth = Boolean(data.overview?.truth);
   element("truth").hidden = element("truth-key").hidden = !hasTruth;

@@ -1,4 +1,4 @@
-// What the server tells (docs/view.md): the run, its frames as far as they are kept here, and which of them is shown.
+// The server's data (docs/view.md): the run, its frames as far as they are kept here, and the shown one.
 import { takeToken } from "/frame_link.js";
 
 const kKept = 4000;
@@ -11,7 +11,7 @@ async function json(path) {
   return answer.json();
 }
 
-// A run that is compared with: its frames, as they are asked for.
+// Another run for comparison; its frames are loaded on demand.
 class OtherRun {
   constructor() { this.details = new Map(); }
 
@@ -56,8 +56,8 @@ function addTo(tracks, id, color, kind, frame) {
   else track.spans.push([frame, frame]);
 }
 
-// Calls `onReady()` once the run is known, `onFrame({frame, image, other})` with the frame that is to be shown, and
-// `onRun(run)` with the counts.
+// Calls `onReady()` once the run is known, `onFrame({frame, image, other})` with the frame to show, and `onRun(run)` with
+// the counts.
 export class RunData {
   constructor(onFrame, onRun) {
     this.onFrame = onFrame;
@@ -86,7 +86,7 @@ export class RunData {
     if (!this.following) this.show(wanted ?? info.first_frame);
   }
 
-  // Of a run that goes on, made from what is kept.
+  // The overview of a running run, made from the kept frames.
   currentOverview() {
     if (this.overview) return this.overview;
     const frames = [...this.frames.keys()].sort((a, b) => a - b).slice(-kChunk).map((number) => this.frames.get(number));
@@ -106,7 +106,7 @@ export class RunData {
     };
   }
 
-  // Where all places are taken, the browser does not say why.
+  // If all seats are taken, the browser does not say why.
   async tellRefusal() {
     this.tell({ ...(this.run || {}), state: "refused" });
     setTimeout(() => this.listen(), 5000);
@@ -159,7 +159,7 @@ export class RunData {
     return frames.reverse();
   }
 
-  // Frames near the one shown, oldest first; of a run that is over those after it, too.
+  // Frames near the shown one, oldest first, with later ones if the run is over.
   around(count) {
     if (!this.info.recorded) return this.past(count);
     const from = Math.max(this.first, Math.min(this.shown - Math.floor(count / 2), this.last + 1 - count)), frames = [];
@@ -170,7 +170,7 @@ export class RunData {
     return frames;
   }
 
-  // The newest wish wins; one is fetched at a time.
+  // The newest request wins; one is fetched at a time.
   show(number) {
     this.wanted = Math.max(this.first, Math.min(this.last, number));
     if (!this.loading) this.load();

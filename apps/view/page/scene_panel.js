@@ -1,4 +1,4 @@
-// The scene in three dimensions, from behind or above, with the camera followed if wanted.
+// The scene in three dimensions, from behind or above; the view may follow the camera.
 import { dashes, dispose, dots, ego, ellipse, frameOf, headingOf, place, ribbon, roadGrid, vehicle } from "/scene_shapes.js";
 
 const kPast = 150, kPredicted_s = 2, kCell_m = 5, kUsualHeight_m = 1.65;
@@ -72,7 +72,7 @@ export class ScenePanel {
     this.render();
   }
 
-  // The road below a place, as last seen.
+  // The road below a position, as last seen.
   below(p, lift = 0) {
     const { point, up } = this.road;
     const y = point.y - (up.x * (p.x - point.x) + up.z * (p.z - point.z)) / up.y;
@@ -91,7 +91,7 @@ export class ScenePanel {
     this.grid.material.uniforms.eye.value.copy(at);
   }
 
-  // `extra`: the true path and that of another run as lists of x, y, z of the world, both up to about now, and the other
+  // `extra` has the true path and another run's as lists of x, y, z of the world, both up to about now, and the other
   // run's frame; each may be missing.
   show(frame, past, chosen, extra = {}) {
     Object.assign(this, { frame, past, chosen, extra });
@@ -145,7 +145,7 @@ export class ScenePanel {
     for (const object of other?.objects ?? []) group.add(frameOf(object, color));
   }
 
-  // At constant speed and rate of turn.
+  // Extrapolates at constant speed and yaw rate.
   predicted(object, center) {
     const v = place(object.velocity), points = [this.below(center, 0.05)], step = 0.1;
     const up = place([object.T[2], object.T[6], object.T[10]]).normalize(), p = center.clone();
@@ -171,7 +171,7 @@ export class ScenePanel {
     group.add(new THREE.Points(geometry, new THREE.PointsMaterial({ size: 3, sizeAttenuation: false, vertexColors: THREE.VertexColors })));
   }
 
-  // The eye keeps its place relative to the camera that is followed.
+  // The eye keeps its position relative to the followed camera.
   moveWith(at, heading) {
     if (!this.pose) {
       this.pose = { at, heading };

@@ -2,7 +2,7 @@
 
 export const place = (p) => new THREE.Vector3(p[0], -p[1], -p[2]);
 
-// A flat band along a line, as wide lines are not to be had.
+// A flat band along a line, as WebGL draws no wide lines.
 export function ribbon(points, width, color, opacity = 1) {
   const positions = [], index = [];
   for (let i = 0; i < points.length; ++i) {
@@ -24,7 +24,7 @@ function flat(color, opacity) {
   return new THREE.MeshBasicMaterial({ color, transparent: opacity < 1, opacity, side: THREE.DoubleSide, depthWrite: opacity === 1 });
 }
 
-// Discs along a line, a fixed way apart.
+// Discs along a line, a fixed distance apart.
 export function dots(points, radius, gap, color) {
   const group = new THREE.Group();
   const geometry = new THREE.CircleBufferGeometry(radius, 12).rotateX(-Math.PI / 2);
@@ -42,7 +42,7 @@ export function dots(points, radius, gap, color) {
   return group;
 }
 
-// Two standard deviations of a place on the ground, from the covariance of x and z in the run's world.
+// Two-sigma ellipse of a position on the ground, from the covariance of x and z in the run's world.
 export function ellipse(center, [xx, xz, zz], color) {
   const mean = (xx + zz) / 2, spread = Math.hypot((xx - zz) / 2, xz);
   const major = 2 * Math.sqrt(Math.max(mean + spread, 0)), minor = 2 * Math.sqrt(Math.max(mean - spread, 0));
@@ -109,7 +109,7 @@ export function dashes(points, color) {
   return line;
 }
 
-// Lines on the road every so many meters of the world, fading away from where the camera is.
+// A grid of lines on the road, fixed in the world, which fades away from the camera.
 export function roadGrid(cell_m, color) {
   const material = new THREE.ShaderMaterial({
     transparent: true, depthWrite: false, side: THREE.DoubleSide, extensions: { derivatives: true },
@@ -139,7 +139,7 @@ export function ego(T, road, camera, colors) {
   return group;
 }
 
-// About three.js' y axis, 0 where the camera looks along the run's z axis.
+// Angle about three.js' y axis, 0 if the camera looks along the run's z axis.
 export const headingOf = (T) => Math.atan2(-T[2], T[10]);
 
 export function dispose(group) {

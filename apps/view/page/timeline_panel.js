@@ -1,4 +1,4 @@
-// Below the slider: frames that were not simply good, and how errors and times went over the drive. A click goes there.
+// The timeline below the slider: frames that are not good, and errors and times over the drive. A click goes there.
 
 const kMargin = 8;  // half of the slider's thumb, so that both are in line
 const kText = 15;   // height of a curve's name and value, above it
@@ -6,7 +6,7 @@ const kStatus = { degraded: "degraded", lost: "lost", rejected: "image rejected"
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const element = (id) => document.getElementById(id);
 
-// Where a frame stands between the first and the last, from 0 to 1.
+// Position of a frame between the first and the last, from 0 to 1.
 const share = (frame, first, last) => (last > first ? (frame - first) / (last - first) : 0);
 
 function span(mark) {
@@ -37,7 +37,7 @@ export class TimelinePanel {
     return Math.round(first + Math.min(Math.max(at, 0), 1) * (last - first));
   }
 
-  // `curves`: name, unit, digits, and lines of a color and a value per frame from `first_frame` on.
+  // `curves` have a name, unit, digits, and lines of a color and a value per frame from `first_frame` on.
   setOverview(marks, curves, [first, last]) {
     this.range = [first, last];
     this.setMarks(marks);
@@ -97,7 +97,7 @@ export class TimelinePanel {
     for (const line of curve.lines) this.drawLine(context, line, width - 2 * kMargin, height, curve.high || 1);
   }
 
-  // In each column of pixels the largest value, so that no peak is lost.
+  // Takes the largest value in each column of pixels, so that no peak is lost.
   drawLine(context, { values, first_frame, color, dash = [] }, width, height, high) {
     const [first, last] = this.range, columns = new Map();
     values.forEach((value, i) => {

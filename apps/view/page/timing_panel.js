@@ -39,7 +39,7 @@ function bars(element, entries) {
 }
 
 export class TimingPanel {
-  // `overall`: percentiles of a run that is over, of all its frames (docs/view.md).
+  // `overall` has the percentiles of all frames of a run that is over (docs/view.md).
   constructor(info, overall) {
     this.info = info;
     this.overall = overall;
@@ -78,7 +78,7 @@ export class TimingPanel {
     }
   }
 
-  // `past` is what percentiles are taken of while a run goes on, `around` what is drawn.
+  // `past` are the frames for the percentiles of a running run, `around` those that are drawn.
   showFrame(frame, past, around) {
     this.showRecent(around);
     const text = (value) => (value === null || value === undefined ? "\u2013" : value.toFixed(1));
@@ -91,7 +91,7 @@ export class TimingPanel {
       ({ name, share: (now[i] ?? 0) / scale, mark: high[i] / scale, text: text(now[i]) })));
   }
 
-  // Of a run that goes on.
+  // Percentiles of a running run.
   recentPercentiles(past) {
     const timed = past.slice(-kRecent).map(({ timing }) => timing).filter(Boolean);
     const sorted = timed.map(this.value).sort((a, b) => a - b);
@@ -121,7 +121,7 @@ export class TimingPanel {
     this.showHistogram((this.info.paced ? run.latency_counts : run.processing_counts) ?? []);
   }
 
-  // Without the empty ends.
+  // The buckets without the empty ends.
   showHistogram(counts) {
     const first = Math.max(0, counts.findIndex((count) => count > 0) - 1);
     let end = counts.length;

@@ -1,4 +1,5 @@
-// When each object was followed, and, where there is truth, when each label moved: a row each. A click goes there.
+// A row for each object with the frames in which it was followed, and for each label with those in which it moved. A
+// click goes there.
 
 const element = (id) => document.getElementById(id);
 const kRest_ms = 400;
@@ -12,7 +13,7 @@ export class TracksPanel {
     this.scroll_due = 0;
   }
 
-  // `labels` stand below the first track that followed them, those that nothing followed where they began.
+  // `labels` stand below the first track that followed them; labels that nothing followed stand where they began.
   set({ tracks, labels = [] }, [first, last]) {
     const key = JSON.stringify([first, last, tracks.map(({ id, spans }) => [id, spans]), labels.length]);
     if (key === this.key) return;
@@ -56,7 +57,7 @@ export class TracksPanel {
     return item;
   }
 
-  // To the frame under the pointer, or the nearest in which it is there; by keys to its first.
+  // Goes to the frame under the pointer, or the nearest one with the object; by keys to its first frame.
   go(event, row, bar) {
     const box = bar.getBoundingClientRect(), [first, last] = this.range;
     const wanted = event.detail === 0 || event.clientX < box.left ? row.spans[0][0] :
@@ -77,7 +78,7 @@ export class TracksPanel {
     this.scrollToHere();
   }
 
-  // Of many rows those that are there come into view, unless somebody is at the list.
+  // Scrolls the rows of present objects into view, unless the user is in the list.
   scrollToHere() {
     const list = element("tracks"), box = list.parentElement, first = list.querySelector(".here");
     if (performance.now() < this.scroll_due || !first || box.scrollHeight <= box.clientHeight || box.matches(":hover, :focus-within")) return;

@@ -1,4 +1,4 @@
-// Where to look first: the frames with the largest errors, the slowest ones, and those that were not tracked.
+// The frames to look at first: those with the largest errors, the slowest ones, and those that were not tracked.
 
 const element = (id) => document.getElementById(id);
 const kMost = 8;
