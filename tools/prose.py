@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures how long the sentences of the documents are and how doc comments begin, and fails where they are out of bounds.
 
-  tools/prose.py              the documents (but the change log) and headers of this repository; names the longest sentences of a document that is out of bounds
+  tools/prose.py              the documents and headers of this repository; names the longest sentences of a document that is out of bounds
   tools/prose.py FILE...      only prints the words of a sentence in these files: median, 90th percentile, most
 
 Tables, code blocks, headings, pictures and HTML are left out. An item of a list is a paragraph, and inline code is one word.
