@@ -100,7 +100,8 @@ Kind kindOf(const NullSpaceDirection& direction) {
   return direction.constraint == Constraint::kWeak ? Kind::kBadlyConditioned : Kind::kUnconstrained;
 }
 
-/// True when no factor constrains the direction, and not only a variable without own factors moves along it.
+/// True when no factor constrains the direction, and several variables move along it or the one that moves has no
+/// factors.
 bool isJoint(const FactorGraph& graph, const NullSpaceDirection& direction) {
   return direction.constraint == Constraint::kNone &&
          (direction.steps.size() > 1 || graph.factorsOf(direction.held).empty());
