@@ -59,7 +59,7 @@ class FluidRelinearization {
     FactorId factor;
     double mismatch = 0;
   };
-  /// Limit that a relinearization meets first.
+  /// Outcome of a relinearization under the allowances and the budget.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
   struct EliminationCost {
     std::int64_t scalars = 0;

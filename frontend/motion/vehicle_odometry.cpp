@@ -57,7 +57,8 @@ void VehicleOdometry::judge(bool agrees) {
   believed_ = agreement_ > (believed_ ? kLeastAgreement : kRegainedAgreement);
 }
 
-/// Drops a dispute that lasts: vehicles do not fill the view for ever, and a sensor may stick.
+/// Counts frames in dispute, of which many end the belief: vehicles do not fill the view for ever, and a sensor may
+/// stick.
 void VehicleOdometry::dispute() {
   constexpr int kMostDisputed = 50;
   if (++disputed_ < kMostDisputed) return;
