@@ -78,7 +78,7 @@ struct PoseScoring {
   std::span<const double> weights;  // one per observation, none negative
   double max_chi2;
 };
-/// Sum over the observations, the smaller the better (MSAC); above `bound` any value above it may be returned.
+/// Sum over the observations, the smaller the better (MSAC); from `bound` on it may be incomplete.
 double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
                  const PoseScoring& scoring, double bound);
 

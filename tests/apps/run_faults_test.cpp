@@ -8,7 +8,7 @@
 #include "io/run_folder.hpp"
 #include "tests/apps/program_run.hpp"
 
-/// What `motorcade run` answers to inputs, outputs and settings that cannot work.
+/// Tests the answers of `motorcade run` to inputs, outputs and settings that cannot work.
 namespace motorcade::test {
 namespace {
 
