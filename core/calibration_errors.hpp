@@ -28,7 +28,7 @@ inline constexpr int kCalibrationSigmas = 5;
 
 inline constexpr int kCalibrationErrors = 12;
 
-/// Shifts of an observation (u, v, d) by each error, as large as its standard deviation, to first order [px]: the
+/// Shifts of an observation (u, v, d) by each error of one standard deviation, to first order [px]. A shift is the
 /// observation of a rig without the error minus the one that was made.
 using ObservationShifts = Eigen::Matrix<double, 3, kCalibrationErrors>;
 ObservationShifts observationShifts(const StereoCamera& camera, const CalibrationSigmas& sigmas,

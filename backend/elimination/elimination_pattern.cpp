@@ -5,8 +5,8 @@
 namespace motorcade {
 namespace {
 
-/// Most frontals and zeros of a parent's clique that a column still joins although that adds zeros. Each front passes a
-/// matrix on, which costs as much as the elimination of a pose or two.
+/// Limits up to which a column joins its parent's clique although that adds zeros: a clique with few frontals, or few
+/// zeros. Each front passes a matrix on, which costs as much as the elimination of a pose or two.
 constexpr int kFewFrontals = 18;    // scalars: three poses
 constexpr double kZeroShare = 0.1;  // of the clique's scalars
 

@@ -15,9 +15,9 @@ namespace motorcade {
 /// final as soon as they are published.
 ///
 /// A chained pose enters with the covariance of its newest link; the filter cannot know that errors of the chain add
-/// up. Filtering the links themselves is worse. A point's measurement of frame i serves two links, into i and out of
-/// it, with opposite signs: errors cancel in the chain but not in filtered links (three times the error of motion on
-/// the rendered scenes).
+/// up. Filtering the links themselves is worse: three times the error of motion on the rendered scenes. A point's
+/// measurement of frame i serves two links with opposite signs, so errors cancel in the chain but not in filtered
+/// links.
 class FilterBackend final : public Backend {
  public:
   using Params = ObjectFilter::Params;

@@ -13,8 +13,8 @@
 
 namespace motorcade {
 
-/// The pose variable of a frame, by whose steps in the world's axes (see `displaced`) observations change: the camera's
-/// in the world, in which the landmarks rest, or the body's seen from the camera.
+/// The pose variable of a frame: the camera's in the world, in which the landmarks rest, or the body's seen from the
+/// camera. Observations change by its steps in the world's axes (see `displaced`).
 enum class FramePose { kWorldCam, kCamBody };
 
 /// An observation of a landmark; `frame` counts the frames of the factor that holds it.

@@ -38,8 +38,8 @@ class LandmarkBundles {
   void relinearize(const PoseVariable& pose_variable);
   /// Fixes the factors over ended tracks.
   void fix() { closed_.clear(); }
-  /// Prepares for frames up to this one to leave the graph: lasting factors keep what they say of them, and the factor
-  /// over the tracks that go on is made anew without them.
+  /// Prepares for frames up to this one to leave the graph. Lasting factors keep what they say of them; the factor over
+  /// the tracks that go on is made anew without them.
   void retire(FrameId oldest);
   /// Forgets the body's poses, which have gone, and the factors with them.
   void drop();

@@ -44,7 +44,7 @@ void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameSha
 }
 
 /// Learns the variance by the method of moments. The landmarks alone, without the prior, tell a shake s with the
-/// variance v, so the mean of s^2 - v is the variance of the shakes, with a variance of 2 (sigma^2 + v)^2.
+/// variance v. The mean of s^2 - v is the variance of the shakes; its own variance is 2 (sigma^2 + v)^2.
 void RigShake::learn(const FrameShake& shake) {
   const double sigma = sigma_px(), told = 1 / shake.variance_px2 - 1 / (sigma * sigma);
   if (!(told > 0)) return;

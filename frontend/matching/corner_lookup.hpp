@@ -50,8 +50,8 @@ class alignas(64) Signature {
 class CornerLookup {
  public:
   explicit CornerLookup(const Features& features);
-  /// Adds shifts from a point of the previous image to the two corners within the bounds that look most like it, and
-  /// differ from it by less than `max_difference` gray levels per pixel.
+  /// Adds shifts from a point of the previous image to the two most similar corners within the bounds. They must differ
+  /// from it by less than `max_difference` gray levels per pixel.
   void addSimilar(const Signature& look, const Eigen::Vector2f& point_px, const ShiftBounds& bounds,
                   double max_difference, Guesses& guesses) const;
 

@@ -35,8 +35,8 @@ class SceneFlowEstimator {
     Eigen::Matrix3d covariance;
     double chi2;  // 3n - 3 degrees of freedom
   };
-  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise,
-  /// over the longest window that such a motion fits: near vehicles that brake or turn leave it within half a second.
+  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise.
+  /// The window is the longest that such a motion fits: near vehicles that brake or turn leave it within half a second.
   /// Empty with too few observations or when no window fits.
   struct Fits {
     std::optional<StaticFit> at_rest;

@@ -29,7 +29,7 @@ FaceInformation measureFaces(const LevelDisparities& disparities, const Outline&
                              std::span<const SurfacePoint> surface, const ObjectView& view, const StereoCamera& camera);
 
 /// The same, also by a label's outline where there is one. Small bodies are measured by that alone, as it is far more
-/// exact, others by both in equal parts: all labels may err to one side, as those of a camera beside this one.
+/// exact, others by both in equal parts. All labels may err to one side, as those of a camera beside this one.
 FaceInformation measureFaces(const Sight& seen, std::span<const SurfacePoint> surface, const ObjectView& view,
                              const StereoCamera& camera);
 

@@ -17,8 +17,8 @@ namespace motorcade {
 
 /// View of an object by the camera in one frame, as far as it is known before its outline.
 struct ObjectView {
-  /// Cells between a body that moved and what rests, in the image of an earlier frame, from which the two can be told
-  /// apart although each estimate may be off by a cell.
+  /// Cells between a body that moved and what rests, in the image of an earlier frame, from which on the two can be
+  /// told apart. Each estimate may be off by a cell.
   static constexpr double kWellApart = 6;
   /// Width of a small body in cells; 0 of other bodies. Someone evenly dressed looks the same until gone by it.
   double width = 0;

@@ -7,7 +7,7 @@
 namespace motorcade {
 
 /// A byte for each disparity of each pixel of a window. Pixels side by side on a line (a row of the window, or a
-/// column) make blocks of kByteLanes, and a block has its disparities one after the other: vector arithmetic then never
+/// column) make blocks of kByteLanes, and a block has its disparities one after the other. So vector arithmetic never
 /// crosses lanes. Blocks are full, and lines exist up to a multiple of kByteLanes; what is beyond the window may hold
 /// anything.
 class DisparityBlocks {

@@ -12,7 +12,7 @@ inline constexpr double kFastestWalk_mps = 3;    // who runs for a bus
 inline constexpr double kFastestRide_mps = 8;    // on a bicycle
 inline constexpr double kSlowestWalk_mps = 0.5;  // what is slower cannot be told from what it stands before
 
-/// True when an object may be a person or a two-wheeler, as far as is seen of it: it is no faster than these, and its
+/// True when an object may be a person or a two-wheeler, as far as is seen of it. It is no faster than these, and its
 /// points lie within what one takes up of the road. A vehicle of which little was seen yet may pass as well.
 bool mayBeSmall(const TrackedObject& object);
 

@@ -145,7 +145,7 @@ struct Result {
   std::array<double, 12> T_world_cam{};
   /// Covariance of T_world_cam relative to the frame that defines the world; grows with the way. Empty behind a gap.
   std::optional<std::array<double, 36>> pose_covariance{};
-  /// Covariance of T_cam(before)_cam(now), `Options::covariance_frames` apart or since the last result before those.
+  /// Covariance of T_cam(before)_cam(now). Before is `Options::covariance_frames` ago, or the last result before that.
   std::optional<std::array<double, 36>> motion_covariance{};
   /// The camera's velocity along its axes [m/s] and about them [rad/s], since the last frame that was seen.
   std::array<double, 6> velocity{};
@@ -213,7 +213,7 @@ class MOTORCADE_API Tracker {
   /// and `wait` again. The previous callback has returned by then. It may throw, and call all but ~Tracker.
   void on_result(std::function<void(Result)> take);
   /// Sends each frame once and in order, dropped ones too, to this callback when it leaves the smoothing window, the
-  /// last ones after `close`: as in the program's final files, without velocity, masks and latency. Later results and
+  /// last ones after `close`. They are as in the final files, without velocity, masks and latency. Later results and
   /// `done` wait for it. Empty: to nobody. It may call all but `push`, `wait`, ~Tracker.
   void on_final(std::function<void(Result)> take);
   Counts counts() const noexcept;

@@ -170,8 +170,8 @@ TEST_F(OsiTraceFile, ATurnToTheLeftIsPositive) {
 TEST_F(OsiTraceFile, ErrorsComeFromTheCovariances) {
   const osi3::BaseMoving rmse = exported(drive()).at(4).moving_object(0).base_rmse();
   expectAngles(rmse.orientation(), {0.01, 0.02, 0.03});
-  // The center is off by the body's error, by its turn about the origin and by its own: for d = (1, 0.5, 0.75) and
-  // turns (p, q, r) it is (q d_z - r d_y, r d_x - p d_z, p d_y - q d_x).
+  // The center is off by the body's error, by its turn about the origin and by its own error. For d = (1, 0.5, 0.75)
+  // and turns (p, q, r) the turn moves it by (q d_z - r d_y, r d_x - p d_z, p d_y - q d_x).
   const double pp = 1e-4, qq = 4e-4, rr = 9e-4;
   expectVector(rmse.position(), {std::sqrt(1e-2 + 0.09 + qq * 0.5625 + rr * 0.25),
                                  std::sqrt(4e-2 + 0.04 + rr + pp * 0.5625), std::sqrt(9e-2 + 0.01 + pp * 0.25 + qq)});

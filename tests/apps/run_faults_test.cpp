@@ -145,7 +145,5 @@ TEST_F(Run, AnswersSettingsThatCannotWorkWithTheKeyAndItsRange) {
   }
 }
 
-/// Real frames with two lead cars; the tests that need them are skipped where the data is absent.
-
 }  // namespace
 }  // namespace motorcade::test
