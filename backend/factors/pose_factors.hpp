@@ -9,9 +9,8 @@
 ///
 /// Equations 3 and 4 of the paper print the residuals as f(z_{i-1}, v_i) - z_{i-1} and h(z_{i'}, e) - z_{i'}, which
 /// compare a prediction with the pose it was made from. Here they are f(z_{i-1}, v_i) - z_i and h(z_{i'}, e) - z_i, as
-/// they are meant, with log(predicted^-1 * actual) as the difference of two poses. In all of them a measured pose is M
-/// = true * exp(n), n ~ (0, covariance).
-/// n ~ (0, covariance) in all of them.
+/// they are meant, with log(predicted^-1 * actual) as the difference of two poses.
+/// In all of them a measured pose is M = true * exp(n), n ~ (0, covariance).
 namespace motorcade {
 
 /// r = log(mean^-1 * T)
@@ -27,8 +26,8 @@ Vector6d poseSigmas(double sigma_m, double tilt_rad, double yaw_rad);
 PoseNoise independentNoise(const Vector6d& sigma);
 std::unique_ptr<const JacobianFactor> priorFactor(VariableId v, const SE3& mean, const Vector6d& sigma);
 
-/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses, z_i =
-/// z_{i-1} v_i:
+/// Odometry between successive camera poses, x_i = x_{i-1} u_i, and motion between successive object poses,
+/// z_i = z_{i-1} v_i:
 ///   r = log(motion^-1 * T_before^-1 * T_now)
 struct MotionModel {
   SE3 motion;  // T_before_now
@@ -65,8 +64,8 @@ struct SmoothMotionModel {
 using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;
 
 /// Noise of a smooth motion factor. White noise on acceleration of density q makes the mean velocities of two adjacent
-/// intervals differ by q (dt1 + dt2) / 3, but each difference is correlated with the next (1/4). An independent q (dt1
-/// + dt2) / 2 has the right variance over many intervals.
+/// intervals differ by q (dt1 + dt2) / 3, but each difference is correlated with the next (1/4).
+/// An independent q (dt1 + dt2) / 2 has the right variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
 }  // namespace motorcade

@@ -20,8 +20,8 @@ void turnColumns(LinearModels::Term& term, Eigen::Index column, const Eigen::Mat
     term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
 }
 
-/// Turns columns that act on right perturbations into columns for steps in the world's axes: to first order rho = R^T
-/// dp, phi = R^T dphi.
+/// Turns columns that act on right perturbations into columns for steps in the world's axes:
+/// to first order rho = R^T dp, phi = R^T dphi.
 void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> variables, LinearModels::Term& term) {
   Eigen::Index at = 0;
   for (const VariableId v : variables) {

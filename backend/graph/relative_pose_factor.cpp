@@ -45,8 +45,8 @@ double wrapped(double angle_rad) {
   return angle_rad - kTurn_rad * std::nearbyint(angle_rad / kTurn_rad);
 }
 
-/// Log(R) and the factor k of its inverse right Jacobian: Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t
-/// / 2)) / t^2.
+/// Log(R) and the factor k of its inverse right Jacobian:
+/// Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t / 2)) / t^2.
 struct RotationLog {
   Eigen::Vector3d phi_rad;
   double k;

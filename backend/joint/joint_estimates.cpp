@@ -76,8 +76,8 @@ struct JointGraph::TwistChanges {
     return J;
   }
   /// Acceleration from `covariance`, the graph's of the two changes, and `density`, that of its white noise on
-  /// acceleration. At the end of an object's frames the noise prior draws the mean change towards zero. The drawn part
-  /// is the remaining share of the variance before any measurement, density / length.
+  /// acceleration. At the end of an object's frames the noise prior draws the mean change towards zero, by the share
+  /// that is left of the variance before any measurement, density / length.
   ObjectAcceleration acceleration(const Eigen::Matrix2d& covariance, const Vector6d& density) const {
     const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
       const double variance = std::max(0.0, covariance(k, k));

@@ -14,8 +14,8 @@ namespace motorcade {
 struct JointParams {
   /// Views of a landmark, after which its track is cut.
   int track_frames = 10, object_track_frames = 14;
-  /// Frames over which a cut leaves views, see BodyPoints. Vehicles have few points, and each point that is followed
-  /// for long keeps the body's frame where it is.
+  /// Age up to which a cut leaves views, see BodyPoints. Vehicles have few points, and each point that is followed for
+  /// long keeps the body's frame where it is.
   int object_kept_frames = 64;
   int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
   /// The landmarks at rest are eliminated in one of so many frames; the camera is aligned to them in the others.

@@ -28,9 +28,9 @@ class EliminationBudget {
   bool limited() const { return limited_; }
   std::int64_t substitutionsLeft() const { return substitutions_left_; }
   void spendSubstitutions(std::int64_t scalars) { substitutions_left_ -= scalars; }
-  /// Saves the substitutions left for the next update, or nothing.
+  /// Saves the substitutions left for the next update if a model waits, else nothing.
   void saveSubstitutions(bool model_waits) { saved_substitutions_ = model_waits ? substitutions_left_ : 0; }
-  /// Saves the eliminations left for the next update, or nothing.
+  /// Saves the eliminations left for the next update if a variable waits, else nothing.
   void save(bool variable_waits) { saved_ = variable_waits ? left_ : 0; }
 
   /// True when the rest of the work can wait for the next update. Always false without a limit of time.

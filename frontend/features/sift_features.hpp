@@ -7,8 +7,7 @@
 #include "frontend/features/sift_module.hpp"
 #include "frontend/messages.hpp"
 
-/// The paper's own front-end: SIFT points matched by their descriptors. It is an option; it takes about 115 ms per
-/// image.
+/// The paper's own front-end: SIFT points matched by their descriptors. Optional; takes about 115 ms per image.
 namespace motorcade {
 
 inline constexpr double kSiftSigma_px = 0.4;  // of a point's position and of the disparity of a match

@@ -16,9 +16,9 @@ float grainAround(const Image& image, int x, int y);
 /// most of the image is clipped, or it is too small.
 std::optional<float> grainOf(const Image& image);
 
-/// Returns the image with less noise, so that patches are recognized. Its mean under a binomial 5x5 window replaces it
-/// by a share that grows with the grain from none to all. This costs sharpness, so images with the usual grain stay as
-/// they are.
+/// Returns the image with less noise, so that patches are recognized. The mean under a binomial 5x5 window replaces
+/// each pixel by a share that grows with the grain from none to all. This costs sharpness, so images with the usual
+/// grain stay as they are.
 Image denoised(const Image& image, float grain_gray, ImagePool& pool);
 
 }  // namespace motorcade

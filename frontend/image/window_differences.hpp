@@ -30,9 +30,9 @@ struct Window {
   }
 };
 
-/// Sums of absolute differences between a window and those around (other_u + i, other_v) of another image, i <
-/// costs.size() <= kMaxWindowCosts. The difference of the means (to a whole gray level) is taken out first. All windows
-/// lie inside their images. Blocks of sixteen costs are left out if their bit in `blocks` is not set.
+/// Sums of absolute differences between a window and those around (other_u + i, other_v) of another image, for each i
+/// below costs.size(), at most kMaxWindowCosts. The difference of the means (to a whole gray level) is taken out first.
+/// All windows lie inside their images. Blocks of sixteen costs are left out if their bit in `blocks` is not set.
 void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
                        std::span<std::uint16_t> costs, std::uint32_t blocks = ~std::uint32_t{0});
 

@@ -30,7 +30,7 @@ struct ExpectedDisparities {
 };
 
 /// Mutual consistency over two stereo pairs. A point that optical flow followed from L(t-1) to L(t) is kept only if it
-/// is found in R(t) near the disparity that its disparity between L(t-1) and R(t-1) predicts. Stateless.
+/// is found in R(t) near the disparity predicted from that between L(t-1) and R(t-1). Stateless.
 class CircularMatching {
  public:
   struct Params {

@@ -7,7 +7,7 @@
 
 namespace motorcade {
 
-/// Greatest disparity of the matches that are known to a whole pixel at least.
+/// Upper bound of the matches' disparities, which are known to a whole pixel at least.
 float greatestDisparity_px(const std::vector<std::optional<StereoMatch>>& of_corner);
 
 /// True when `dropHalfOccluded` looks at this corner's disparity, or may drop its match.

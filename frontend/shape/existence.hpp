@@ -29,7 +29,7 @@ class Existence {
   /// Call first for a track that was as slow and small as a person when it was spawned: most of these are nothing.
   void doubtSlowBirth();
   /// Adds an online estimate of the speed; `sigma_mps` holds the errors that all points share. Estimates are not added
-  /// up, as each gathers what was seen before it. An object that stops is the one that moved for some time yet.
+  /// up, as each gathers what was seen before it. An object that stops counts as one that moved for some time yet.
   void addSpeed(double speed_mps, double sigma_mps);
   /// Adds a settled or final estimate: what moved then has moved for good. Of estimates of rest the surest counts.
   void addSettledSpeed(double speed_mps, double sigma_mps);

@@ -10,11 +10,11 @@
 /// x in its direction of travel, y left, z up. Covariances are row by row, of perturbations (rho, phi) [m, rad] on the
 /// right, T exp(rho, phi). Units are in the names.
 ///
-/// A struct begins with its size, which the caller sets: motorcade_frame frame = {.struct_size = sizeof frame}; Later
-/// versions append members. Members that an older program's struct lacks are not written, and are read as their
-/// default; members that an older library does not know must be zero. Zero is the default where there is no `_init`.
-/// One thread pushes, one takes results; any thread may make every other call. Arguments are read during the call
-/// alone. A call that gives an error leaves structs as they were, and NULL where a handle was asked for.
+/// A struct begins with its size, which the caller sets: motorcade_frame frame = {.struct_size = sizeof frame};
+/// Later versions append members. Those that an older program's struct lacks are not written, and have their default
+/// when read; those that an older library does not know must be zero, the default where there is no `_init`. One thread
+/// pushes, one takes results; any thread may make every other call. Arguments are read during the call alone. A call
+/// that gives an error leaves structs as they were, and NULL where a handle was asked for.
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

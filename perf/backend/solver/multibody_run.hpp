@@ -23,7 +23,7 @@ struct MultibodyBin {
   std::size_t held_bytes = 0, heap_bytes = 0, resident_bytes = 0, variables = 0, factors = 0;
 };
 
-/// Ageing of a long drive's solver: it runs in turns with one that begins late in the drive, on the same frames. What
+/// Aging of a long drive's solver: it runs in turns with one that begins late in the drive, on the same frames. What
 /// they hold differs only in what was retired long ago, and the machine's other load slows both.
 struct MultibodyAging {
   static constexpr double kMaxRatio = 1.1;
