@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results on
+# Runs what takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results on
 # an arm64 processor, a long drive, and rendered scenes over ten seeds in both styles. Goes on after a failure; prints one table at its end,
 # and ends with exit code 1 if any step failed. The scenes' figures are in build/nightly/scenes.log and scenes_film.log.
 #   tests/nightly.sh [FUZZ_SECONDS]   per target, default 600
