@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// Measurements to trajectories. Call in frame order: a back-end remembers all frames of its window.
+/// Turns measurements into trajectories. Call in frame order: a back-end remembers all frames of its window.
 class Backend {
  public:
   Backend() = default;
@@ -14,11 +14,11 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
-  /// The newest frame's estimate, and those that left the window. Throws nothing: numerical trouble shows in the
-  /// result.
+  /// Returns the newest frame's estimate, and those that left the window. Throws nothing: numerical trouble shows in
+  /// the result.
   virtual EstimatesPtr operator()(const FrameMeasurementsPtr& measurements) = 0;
 
-  /// Final estimates of the frames still in the window, oldest first. No further frame may follow.
+  /// Returns final estimates of the frames still in the window, oldest first. No further frame may follow.
   virtual std::vector<FrameEstimate> finish() = 0;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The Hungarian method by shortest augmenting paths (Jonker and Volgenant, Computing 38, 1987): rows enter one at a
+/// The Hungarian method by shortest augmenting paths (Jonker and Volgenant, Computing 38, 1987). Rows enter one at a
 /// time, each by the cheapest path of reassignments; the dual prices keep all reduced costs non-negative.
 class AugmentingPaths {
  public:
@@ -33,7 +33,7 @@ class AugmentingPaths {
   }
 
  private:
-  /// Beyond the real columns every row has one of its own, where it stays alone.
+  /// Cost of a pair. Each row also has a column of its own beyond the real ones, where it stays alone.
   double costOf(int row, int column) const {
     if (column >= cost_.cols()) return column - cost_.cols() == row ? forbidden_ : kInfinity;
     const double value = cost_(row, column);

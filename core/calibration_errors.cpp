@@ -3,8 +3,8 @@
 namespace motorcade {
 namespace {
 
-/// Errors of disparities at rays 45 degrees up, both ways or sideways, as shares of that in the middle: so that they
-/// come to .06 px over an image of KITTI, where fields of .04 to .07 px are measured.
+/// Disparity errors on rays 45 degrees up, up and sideways, or sideways, as shares of the error in the middle. Over a
+/// KITTI image they come to .06 px; fields of .04 to .07 px are measured there.
 constexpr double kRoll = 1 / 3.0, kPitch = 2 / 3.0, kFocal = 2 / 3.0, kDistortion = 4 / 3.0;
 
 }  // namespace
@@ -31,7 +31,7 @@ ObservationShifts observationShifts(const StereoCamera& camera, const Calibratio
   const double tangential = 0.1 * sigmas.distortion;
   ObservationShifts shifts;
   int column = 0;
-  /// `left`, `right`: how much a coordinate u / fx of each image is too large, `down` likewise v / fy of both.
+  /// `left` and `right` are errors of u / fx in the two images, `down` that of v / fy in both; positive: too large.
   const auto addCommon = [&](double sigma, double left, double right, double down) {
     shifts.col(column++) =
         -sigma * Eigen::Vector3d(camera.fx_px * left, camera.fy_px * down, camera.fx_px * (left - right));

@@ -17,8 +17,8 @@ struct CalibrationSigmas {
   double middle_px = 0.7;    // of the principal point, each way
   double distortion = 0.01;  // of the radial term k1; a tenth of it of the tangential ones, p1 and p2
   double baseline = 0.001;   // as a share
-  /// What the right camera's rotation and lens make of disparities: in the middle of the image, by a yaw. Errors by
-  /// roll, pitch, focal length and distortion are in proportion to it.
+  /// Disparity error that the right camera's yaw makes in the middle of the image. The errors by its roll, pitch, focal
+  /// length and distortion are in proportion to it.
   double disparity_px = 0.15;
 
   bool operator==(const CalibrationSigmas&) const = default;
@@ -28,8 +28,8 @@ inline constexpr int kCalibrationSigmas = 5;
 
 inline constexpr int kCalibrationErrors = 12;
 
-/// Shifts of an observation (u, v, d) by each error, as large as its standard deviation, to first order: the
-/// observation of a rig without the error less the one that was made [px].
+/// Shifts of an observation (u, v, d) by each error of one standard deviation, to first order [px]. A shift is the
+/// observation of a rig without the error minus the one that was made.
 using ObservationShifts = Eigen::Matrix<double, 3, kCalibrationErrors>;
 ObservationShifts observationShifts(const StereoCamera& camera, const CalibrationSigmas& sigmas,
                                     const Eigen::Vector3d& uvd_px);

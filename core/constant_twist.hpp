@@ -19,8 +19,8 @@ struct AccelerationNoise {
   Vector6d density() const;
 };
 
-/// Pose and twist of a vehicle with their joint covariance, the state of a Kalman filter on SE(3) that takes the twist
-/// as constant but for white noise on acceleration.
+/// State of a Kalman filter on SE(3): pose and twist of a vehicle with their joint covariance. The twist is constant
+/// but for white noise on acceleration.
 struct ConstantTwistState {
   SE3 T_world_body;
   Vector6d twist = Vector6d::Zero();             // (velocity [m/s], turn rate [rad/s]) in body axes

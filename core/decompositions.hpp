@@ -5,7 +5,7 @@
 
 #include "core/se3.hpp"
 
-/// Eigen's decompositions of the sizes that several rooms use. They are compiled once, in decompositions.cpp: each
+/// Eigen's decompositions of the sizes that several rooms use. They are compiled once, in decompositions.cpp, as each
 /// costs the compiler one to four seconds wherever it is instantiated. A source that decomposes such a matrix includes
 /// this file.
 namespace motorcade {

@@ -42,7 +42,7 @@ constexpr std::array<double, kTerms> inverseOdds(double sign) {
   return terms;
 }
 
-/// A constant in parts of which the upper ones have so many zeros that their multiples are exact.
+/// Constants in parts. The upper parts have so many zeros that their multiples are exact.
 constexpr double kHalfPiUpper = 0x1.921fb544p+0, kHalfPiMiddle = 0x1.0b4611a6p-34, kHalfPiLower = 0x1.3198a2e037073p-69;
 constexpr double kLn2Upper = 0x1.62e42fefap-1, kLn2Lower = 0x1.cf79abc9e3b3ap-40;
 
@@ -58,7 +58,7 @@ double nearCosine(double x) {
   return 1 - (0.5 * x2 - x2 * x2 * polynomial(kTerms, x2));
 }
 
-/// Of numbers between 0 and 1: the arc tangent of the nearest quarter, and the series of what is left.
+/// Arc tangent of a number between 0 and 1: that of the nearest quarter, and the series of the rest.
 double nearArcTangent(double x) {
   static constexpr std::array kOfQuarter{0.0, 0x1.f5b75f92c80ddp-3, 0x1.dac670561bb4fp-2, 0x1.4978fa3269ee1p-1,
                                          std::numbers::pi / 4};
@@ -73,7 +73,7 @@ double nearArcTangent(double x) {
 SineCosine sineCosine(double angle_rad) {
   constexpr double kLargest_rad = 1e9;
   if (!(std::abs(angle_rad) < kLargest_rad)) return {kNotANumber, kNotANumber};
-  constexpr double kMostQuarters = 1 << 20;  // whose multiples of the upper part are exact
+  constexpr double kMostQuarters = 1 << 20;  // multiples of the upper part are exact up to here
   double angle = angle_rad;
   if (std::abs(angle) > kMostQuarters) angle = std::fmod(angle, 2 * std::numbers::pi);
   const double quarters = std::floor(angle * (2 / std::numbers::pi) + 0.5);

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-/// Elementary functions whose last bits are the same on every processor: sums and products in a fixed order, where the
-/// C library takes fused multiplications on processors that have them. Errors are within two units in the last place.
-/// What is not finite, or too large for the purpose (angles beyond 1e9 rad), gives not-a-number.
+/// Elementary functions whose last bits are the same on every processor. Sums and products have a fixed order; the C
+/// library instead uses fused multiplications where a processor has them. Errors are within two units in the last
+/// place. Arguments that are not finite, or too large (angles beyond 1e9 rad), give not-a-number.
 namespace motorcade {
 
 struct SineCosine {
@@ -19,9 +19,9 @@ double arcTangent(double y, double x);
 
 /// Overflows to infinity beyond 709 and is 0 below -708.
 double exponential(double x);
-/// Of positive numbers; minus infinity at 0.
+/// Logarithm of a positive number; minus infinity at 0.
 double logarithm(double x);
-/// Of positive bases.
+/// Power of a positive base.
 double power(double base, double exponent);
 
 /// Length of (x, y), which is neither huge nor tiny.

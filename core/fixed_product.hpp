@@ -4,10 +4,10 @@
 
 namespace motorcade {
 
-/// A * B of fixed sizes. Eigen would take a product with more than eight rows or columns for a large one and compile
-/// its blocked kernels for each shape, at two seconds apiece. The sums are those of its kernels without vectors: of the
-/// first 8 n terms the even and the odd ones apart, as two chains that run side by side, then the rest in order. For
-/// code that is compiled to give the same bits on every processor (core and frontend).
+/// A * B of fixed sizes, for code that must give the same bits on every processor (core and frontend). Eigen would
+/// compile its blocked kernels for each shape with more than eight rows or columns, at two seconds apiece. The sums are
+/// those of Eigen's kernels without vectors: the even and the odd ones of the first 8 n terms make two chains, side by
+/// side. The rest follows in order.
 template <int Rows, int Inner, int Cols>
 Eigen::Matrix<double, Rows, Cols> fixedProduct(const Eigen::Matrix<double, Rows, Inner>& A,
                                                const Eigen::Matrix<double, Inner, Cols>& B) {

@@ -7,7 +7,7 @@
 
 #include "core/messages.hpp"
 
-/// When each stage worked on a frame, for latency reports and traces.
+/// Times at which each stage worked on a frame, for latency reports and traces.
 namespace motorcade {
 
 /// The pipeline's stages, in the order of the data.
@@ -24,7 +24,7 @@ inline constexpr std::size_t kStageCount = static_cast<std::size_t>(Stage::kObje
 inline constexpr auto kStageNames =
     std::to_array<std::string_view>({"prepare", "stereo matching", "optical flow", "scene flow segmentation",
                                      "tracking", "incremental optimization", "object shapes"});
-/// The same as one word, for columns and keys of files.
+/// The stages' names as single words, for columns and keys of files.
 inline constexpr auto kStageKeys =
     std::to_array<std::string_view>({"prepare", "stereo_matching", "optical_flow", "scene_flow_segmentation",
                                      "tracking", "incremental_optimization", "object_shapes"});
@@ -40,7 +40,7 @@ inline double millisecondsBetween(SteadyTime from, SteadyTime to) {
 struct StageSpan {
   SteadyTime start, end;
   int worker = -1;    // slot of the arena that did the work
-  double cpu_ms = 0;  // of that worker's thread alone: what others did of the stage's parallel loops is not in it
+  double cpu_ms = 0;  // of that worker's thread alone; other threads' share of the stage's parallel loops is not in it
   bool ran() const { return start != end; }
   double duration_ms() const { return millisecondsBetween(start, end); }
 };
@@ -59,13 +59,13 @@ struct FrameTiming {
   StageSpan& of(Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
   const StageSpan& of(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
   double latency_ms() const { return millisecondsBetween(due, published); }
-  /// From the moment the pair was due until it entered the flow graph.
+  /// Wait from the moment the pair was due until it entered the flow graph.
   double entry_wait_ms() const { return admitted > due ? millisecondsBetween(due, admitted) : 0; }
-  /// When all that a stage needs was there.
+  /// Moment at which all inputs of a stage were there.
   SteadyTime handedTo(Stage stage) const;
-  /// How long a frame then waited for its turn; 0 where the stage did not run.
+  /// Wait of the frame from then until the stage began; 0 where the stage did not run.
   double wait_ms(Stage stage) const;
-  /// From the end of the last stage until the reader could have the result.
+  /// Wait from the end of the last stage until the reader could have the result.
   double publish_wait_ms() const {
     const StageSpan& last = of(Stage::kObjectShapes);
     return last.ran() ? millisecondsBetween(last.end, published) : 0;

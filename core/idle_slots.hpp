@@ -6,8 +6,8 @@
 
 namespace motorcade {
 
-/// Keeps idle objects behind atomic pointers: a thread that swaps one out owns it, so that no thread ever waits for
-/// another. The class owns nothing: before it ends, its user takes out what is still there.
+/// Keeps idle objects behind atomic pointers. A thread that swaps one out owns it, so no thread ever waits for another.
+/// The class owns nothing: its user takes out what is left before it ends.
 template <class T>
 class IdleSlots {
  public:

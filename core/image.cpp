@@ -70,8 +70,8 @@ class ImagePool::Shelf {
   std::atomic<std::size_t> made_{0};
 };
 
-/// Lays the counts of a shared pointer into the header of the buffer that it shares. They are the last to be released:
-/// then the buffer is idle.
+/// Lays the counts of a shared pointer into the header of the buffer that it shares. The buffer is idle when they are
+/// released, which comes last.
 template <class T>
 struct ImagePool::InHeader {
   using value_type = T;

@@ -35,8 +35,8 @@ constexpr std::uint8_t grayOf(int red, int green, int blue) {
 }
 
 /// Hands out images and takes their buffers back when the last view is gone, so that a steady stream of frames touches
-/// no fresh memory. Any thread may acquire and release images, without locks, and once the stream is warm
-/// without the heap.
+/// no fresh memory. Any thread may acquire and release images. Neither takes a lock nor, once the stream is warm, the
+/// heap.
 class ImagePool {
  public:
   ImagePool();

@@ -6,18 +6,18 @@
 
 namespace motorcade {
 
-/// Which body each pixel of the left image shows, as somebody else's segmentation tells it: one number for the pixels
-/// of one body, 0 where nothing is told. Numbers mean nothing beyond their image. It is evidence, and no more: a label
-/// may be late by some frames, hold what is beside its body, or lie.
+/// Labels of the left image's pixels from somebody else's segmentation: one number for the pixels of one body, 0 where
+/// nothing is told. Numbers mean nothing beyond their image. Labels are evidence and no more: they may be late by some
+/// frames, cover what is beside their body, or lie.
 class InstanceLabels {
  public:
   InstanceLabels() = default;
   InstanceLabels(int width, int height) { resize(width, height); }
-  /// Takes the memory of so many pixels: up to there, `resize` asks nothing of the heap.
+  /// Reserves memory for so many pixels; up to there, `resize` does not use the heap.
   void reserve(int width, int height) {
     labels_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   }
-  /// Content is undefined afterwards, but 0 where the size grows.
+  /// Leaves the content undefined, but 0 where the size grows.
   void resize(int width, int height) {
     width_ = width, height_ = height;
     labels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
@@ -27,7 +27,7 @@ class InstanceLabels {
   int height() const { return height_; }
   const std::uint16_t* row(int y) const { return labels_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
   std::uint16_t* mutableRow(int y) { return labels_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
-  /// Of the pixel whose square holds the point, whole numbers being the middles of pixels; 0 outside the image.
+  /// Label of the pixel whose square holds the point (whole numbers are the middles of pixels); 0 outside the image.
   std::uint16_t at(double u_px, double v_px) const {
     const double x = u_px + 0.5, y = v_px + 0.5;
     return x >= 0 && y >= 0 && x < width_ && y < height_ ? row(static_cast<int>(y))[static_cast<int>(x)] : 0;

@@ -35,7 +35,7 @@ std::vector<LatencyHistogram::Bucket> LatencyHistogram::buckets() const {
   return filled;
 }
 
-/// The first octave is linear, below 2 * kPerOctave microseconds every bucket is one microsecond wide.
+/// Index of a duration's bucket. The first octave is linear: below 2 * kPerOctave microseconds a bucket is 1 us wide.
 std::size_t LatencyHistogram::bucketOf(std::uint64_t duration_us) {
   const int octave = std::max(0, static_cast<int>(std::bit_width(duration_us)) - kBits - 1);
   const auto bucket = static_cast<std::size_t>(octave) * kPerOctave + (duration_us >> octave);

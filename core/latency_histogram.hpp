@@ -24,7 +24,7 @@ class LatencyHistogram {
     double upper_ms;
     std::int64_t count;
   };
-  /// Those with something in them, in rising order; `upper_ms` belongs to the next one.
+  /// Buckets with something in them, in rising order; the next one begins at `upper_ms`.
   std::vector<Bucket> buckets() const;
 
  private:

@@ -9,13 +9,13 @@
 
 namespace motorcade {
 
-/// Hands the newest value from one producer thread to one consumer thread: three slots, of which each side owns one and
-/// the third is exchanged. The producer never waits; an unread value is replaced by the next one.
+/// Hands the newest value from one producer thread to one consumer thread. Each side owns one of three slots, and the
+/// third is exchanged. The producer never waits; an unread value is replaced by the next one.
 template <class T>
 class Mailbox {
  public:
-  /// Producer: publishes `value` and returns the unread one that it replaced, if any. One that is put while or after
-  /// the mailbox is closed is there for `tryTake`.
+  /// Producer: publishes `value` and returns the unread one that it replaced, if any. A value that comes during or
+  /// after `close` remains for `tryTake`.
   std::optional<T> put(T value) {
     slots_[back_] = std::move(value);
     const auto before = middle_.exchange(static_cast<std::uint32_t>(back_) | kFresh, std::memory_order_acq_rel);

@@ -24,7 +24,7 @@ namespace motorcade {
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// What became of an input pair.
+/// Outcome of an input pair.
 enum class FrameStatus {
   kGood,
   kLost,      // processed, but too few matches for an ego-motion: the pose is predicted
@@ -32,7 +32,7 @@ enum class FrameStatus {
   kDropped,   // never processed, by the live policy: the pose is predicted
 };
 
-/// Why a frame is not simply good. A good frame with a cause is *degraded*: its pose is measured, but less surely.
+/// Cause of a status other than simply good. A good frame with a cause is *degraded*: measured, but less surely.
 enum class FrameCause {
   kNone,
   kAfterGap,      // good: measured across frames that were missing or of no use
@@ -46,24 +46,24 @@ enum class FrameCause {
 };
 inline constexpr std::size_t kCauseCount = 9;
 
-/// Which frame a message is of, and what became of it so far. Each stage hands it on, with what it found out.
+/// Number, time and status of a message's frame. Each stage hands it on with its own findings.
 struct FrameHead {
   FrameId frame;
   Timestamp stamp;
   FrameStatus status = FrameStatus::kGood;
   FrameCause cause = FrameCause::kNone;
-  /// Counts up where the frames before and after are not linked by anything measured: poses of different segments lie
-  /// in one frame of reference by prediction alone.
+  /// Counts up where no measurement links the frames before and after. Poses of different segments share a frame of
+  /// reference by prediction alone.
   int segment = 0;
 };
 
-/// What may come with a stereo pair beside its images.
+/// Optional inputs that come with a stereo pair's images.
 struct FrameInputs {
-  /// Pixels of the left image that are of no use, as those that show the own vehicle; null: none.
+  /// Useless pixels of the left image, such as those that show the own vehicle; null: none.
   std::shared_ptr<const PixelMask> ignored;
-  /// Which body the left image's pixels show, of the image's size; null: nobody tells.
+  /// Instance labels of the left image, of its size; null: nobody tells them.
   std::shared_ptr<const InstanceLabels> instances{};
-  /// The vehicle's own motion, as far as it was known when the pair came: so many samples. Null: nothing tells it.
+  /// The vehicle's own motion, of which `vehicle_samples` were known when the pair came. Null: nothing tells it.
   std::shared_ptr<const VehicleMotionLog> vehicle_motion{};
   std::uint64_t vehicle_samples = 0;
 };
@@ -79,7 +79,7 @@ struct StereoFrame {
   SteadyTime decoded{};  // when they were read
 
   bool rejected() const { return head.status == FrameStatus::kRejected; }
-  /// Gives up the images, and what was told of their pixels.
+  /// Gives up the images and the labels of their pixels.
   void reject(FrameCause cause, std::string why) {
     left = right = Image{};
     inputs.ignored.reset();
@@ -104,7 +104,7 @@ struct OwnVehicleView {
 
 enum class ObjectState { kMoving, kStopped, kPredicted };
 
-/// What an object is, as far as its size, height and speed tell.
+/// Kind of an object, as far as its size, height and speed tell.
 enum class ObjectKind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
 
 /// The cuboid around an object, along its body's axes, with its bottom on the ground.
@@ -139,18 +139,18 @@ struct ObjectObservation {
   ObjectState state = ObjectState::kMoving;
   int points = 0;
   Box box;
-  /// The object's pose seen from the camera (encounter), right perturbation; prediction only when state is kPredicted.
+  /// Pose of the object seen from the camera (encounter), right perturbation; only predicted when state is kPredicted.
   SE3 T_cam_body;
   Matrix6d encounter_covariance = Matrix6d::Identity();
-  /// Motion since the object's previous observation, z_{i-1}^-1 * z_i, from points that the encounter did not use. A
-  /// back-end measures it; the front-end leaves it out.
+  /// Motion since the object's previous observation, z_{i-1}^-1 * z_i, from points that the encounter did not use. Only
+  /// back-ends measure it; the front-end leaves it empty.
   struct Motion {
     FrameId since;
     SE3 T_before_now;
     Matrix6d covariance;
   };
   std::optional<Motion> motion;
-  /// Velocity of the body's origin relative to the world, in the camera's axes [m/s], as the front-end sees it.
+  /// Velocity of the body's origin relative to the world, in the camera's axes [m/s], by the front-end's measurement.
   Eigen::Vector3d velocity_cam_mps = Eigen::Vector3d::Zero();
   std::vector<PointMeasurement> measured;  // the body's points that agree with its motion, ordered by point
   std::vector<PointMeasurement> patches;   // the same of patches, which cover a body that may be a walking person
@@ -158,13 +158,13 @@ struct ObjectObservation {
   bool born_labelled = false;              // and all that an instance label showed had moved as one
 };
 
-/// The camera's motion since the frame before, identity in the first one; predicted, with a wide covariance, unless the
-/// frame's status is kGood.
+/// Camera motion since the previous frame, identity in the first one. Unless the frame's status is kGood, it is
+/// predicted, with a wide covariance.
 struct Odometry {
   SE3 T_previous_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation
-  /// The same motion as the vehicle's own sensors tell it; empty where they do not, or are not believed. Where frames
-  /// in a row have no other, the covariances are those of independent steps that add up to what is known of the whole.
+  /// The same motion by the vehicle's own sensors; empty where they do not tell it, or are not believed. In a row of
+  /// frames without another motion, the covariances of independent steps add up to that of the whole.
   struct Vehicle {
     SE3 T_previous_now;
     Matrix6d covariance;
@@ -183,27 +183,27 @@ struct VehicleSensors {
   Motion told{}, seen{};  // by the sensors and by the camera, when they were compared last
 };
 
-/// What the front-end measured in one frame: all that the back-end needs.
+/// Measurements of the front-end in one frame: all that the back-end needs.
 struct FrameMeasurements {
   FrameHead head;
   Odometry odometry;
-  /// Points at rest, and those of which it is not known yet to what they belong; both ordered by point, and none of an
-  /// object's.
+  /// Points at rest, and points not yet known to rest or to belong to an object; both ordered by point. Points of
+  /// objects are in neither.
   std::vector<PointMeasurement> at_rest, undecided;
   /// True minus measured disparity, as the front-end assumes it.
   double disparity_offset_px = 0;
-  /// Objects of this frame. An object that was confirmed now brings its earlier observations along, oldest first,
-  /// before its own of this frame.
+  /// Objects of this frame. A newly confirmed object brings its earlier observations along, oldest first, before the
+  /// one of this frame.
   std::vector<ObjectObservation> objects;
-  /// Tracks that ended: nothing will be observed of them any more.
+  /// Tracks that ended: they get no further observation.
   std::vector<TrackId> ended;
-  /// The part of the image that is known to show the own vehicle; nothing is measured there.
+  /// Part of the image that shows the own vehicle; nothing is measured there.
   std::optional<OwnVehicleView> own_vehicle{};
   std::optional<VehicleSensors> vehicle_sensors{};  // empty where there are none
 };
 using FrameMeasurementsPtr = std::shared_ptr<const FrameMeasurements>;
 
-/// How an object's speed and its yaw rate change.
+/// Rates of change of an object's speed and of its yaw rate.
 struct ObjectAcceleration {
   double along_mps2 = 0, along_sigma_mps2 = 0;  // along its path: positive where it becomes faster
   double yaw_radps2 = 0, yaw_sigma_radps2 = 0;  // about the body's z axis
@@ -216,23 +216,23 @@ struct ObjectEstimate {
   SE3 T_world_body;
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   double speed_sigma_mps = 0;
-  /// Of the velocity, in the world's axes, as far as the camera tells: its own drift is not in it.
+  /// Covariance of the velocity, in the world's axes, as far as the camera tells: its own drift is not in it.
   std::optional<Eigen::Matrix3d> velocity_covariance{};
   double yaw_rate_radps = 0, yaw_rate_sigma_radps = 0;  // about the body's z axis
-  /// Empty where the object has no other frame, and from back-ends that cannot tell it.
+  /// Empty in the object's only frame, and from back-ends that cannot tell it.
   std::optional<ObjectAcceleration> acceleration{};
   int points = 0;
   Box box;
   std::optional<Matrix6d> covariance;  // of T_cam_body of the same frame
   std::optional<ObjectBox> cuboid{};
   double age_s = 0;  // since its first estimate of the same kind, online or final
-  /// The probability that the body is there and moves, or moved before. An online estimate knows what was seen up to
-  /// its frame, a final one all.
+  /// Probability that the body is there and moves, or moved before. An online estimate uses the frames up to its own, a
+  /// final one all.
   double existence_probability = 1;
 };
 
-/// The covariance of a camera's motion is over this many frames unless the caller asks for others. Where the frame so
-/// long before never entered, it is since the last one before it that did.
+/// Number of frames that the covariance of a camera's motion spans, unless the caller asks for others. If the frame so
+/// long before never entered, the motion begins at the last one before it that did.
 inline constexpr int kCameraCovarianceFrames = 10;
 
 /// Covariances of the camera in one frame, right perturbations; empty across what no measurement links.
@@ -241,8 +241,8 @@ struct CameraCovariances {
   std::optional<Matrix6d> pose;    // of T_world_cam, relative to the frame that defines the world: grows with the way
 };
 
-/// The camera and the objects in one frame: *online* as published when it is the newest, *settled* when it is some
-/// seconds old, *final* when it leaves the window.
+/// The camera and the objects in one frame. An estimate is *online* as published for the newest frame, *settled* when
+/// it is some seconds old, and *final* when it leaves the window.
 struct FrameEstimate {
   FrameHead head;
   SE3 T_world_cam;
@@ -250,7 +250,7 @@ struct FrameEstimate {
   std::vector<ObjectEstimate> objects;  // ordered by track
 };
 
-/// What the back-end's update cost and did, for reports and tests.
+/// Cost and work of the back-end's updates, for reports and tests.
 struct SolverCounters {
   std::int64_t updates = 0, relinearizations = 0, reorderings = 0, batch_solves = 0;
   std::int64_t variables = 0, factors = 0, retired_variables = 0;
@@ -260,7 +260,7 @@ struct SolverCounters {
   double disparity_shake_px = 0;  // standard deviation of what all disparities of a frame have in common
 };
 
-/// A shake with a smaller standard deviation can hardly be told from none.
+/// Standard deviation below which a shake can hardly be told from none.
 inline constexpr double kLeastToldShake_px = 0.01;
 
 /// The back-end's answer to one frame.

@@ -9,9 +9,9 @@
 
 namespace motorcade {
 
-/// Hands out objects and takes them back, unchanged, when their last pointer is gone, so that the memory they hold is
-/// used again. Any thread may acquire and release objects, without locks, and without the heap once there are enough of
-/// them. An object that is in use outlives the pool.
+/// Hands out objects and takes them back unchanged when their last pointer is gone, so that their memory is used again.
+/// Any thread may acquire and release objects. Neither takes a lock nor, once there are enough objects, the heap. An
+/// object that is in use outlives the pool.
 template <class T>
 class ObjectPool {
  public:
@@ -35,7 +35,7 @@ class ObjectPool {
       while (Place* place = idle.take()) delete place;
     }
   };
-  /// Lays the counts beside their object. They are the last to be released: then the object is idle.
+  /// Lays the counts beside their object. The object is idle when they are released, which comes last.
   template <class Counts>
   struct InPlace {
     using value_type = Counts;

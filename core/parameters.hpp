@@ -12,11 +12,11 @@
 ///
 ///   std::vector<Parameter> parametersOf(Params& params);
 ///
-/// which binds each field to its name, its range and what a user gains by it. Ranges stand there and nowhere else: the
+/// which binds each field to its name, its range and what a user gains by it. Ranges stand only there: the
 /// configuration, the constructors (`requireValid`) and the tests all read them from there.
 namespace motorcade {
 
-/// Inclusive bounds. They are always finite: infinite, huge and denormal values lie outside of every range.
+/// Inclusive bounds. They are always finite, so infinite, huge and denormal values lie outside every range.
 struct Range {
   double least, most;
 };
@@ -34,7 +34,7 @@ struct Parameter {
   std::variant<int*, double*, bool*, Choice> value;
   std::string gain;   // what a user gains by setting it, in a few words
   Range range{0, 0};  // of numbers
-  /// What the parameter accepts, for messages and comments: `1 to 16`, `"corners" or "sift"`, ...
+  /// Describes the accepted values, for messages and comments: `1 to 16`, `"corners" or "sift"`, ...
   std::string allowed() const;
   bool accepts(double number) const;
 };
@@ -58,8 +58,8 @@ std::vector<ParameterProblem> problemsOf(Params params) {
   return problemsIn(parametersOf(params));
 }
 
-/// For constructors: returns the parameters. Throws std::invalid_argument, naming parameter and range, when one is out
-/// of its range.
+/// Returns the parameters, for constructors. Throws std::invalid_argument with parameter and range when one is out of
+/// range.
 template <class Params>
 const Params& requireValid(const Params& params) {
   const auto problems = problemsOf(params);

@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// A set of an image's pixels. One that was made without a size holds none.
+/// A set of an image's pixels; empty when made without a size.
 class PixelMask {
  public:
   PixelMask() = default;
@@ -19,14 +19,14 @@ class PixelMask {
   int height() const { return height_; }
   bool empty() const { return std::ranges::find(inside_, 1) == inside_.end(); }
 
-  /// The pixel whose square holds the point, whole numbers being the middles of pixels; outside the image there is
-  /// none.
+  /// True for a point in the square of a pixel of the set (whole numbers are the middles of pixels); false outside the
+  /// image.
   bool holds(double u_px, double v_px) const {
     const double x = u_px + 0.5, y = v_px + 0.5;
     return x >= 0 && y >= 0 && x < width_ && y < height_ && inside_[index(static_cast<int>(x), static_cast<int>(y))];
   }
-  /// Adds the pixels of columns `left` up to `right` and rows `top` up to `bottom`, ends excluded, as far as they lie
-  /// in the image.
+  /// Adds the pixels of columns `left` up to `right` and rows `top` up to `bottom`, ends excluded, that lie in the
+  /// image.
   void add(int left, int top, int right, int bottom) {
     for (int y = std::max(0, top); y < std::min(bottom, height_); ++y)
       for (int x = std::max(0, left); x < std::min(right, width_); ++x) inside_[index(x, y)] = 1;

@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// Below this angle a Taylor series is exact to double precision.
+/// Angle below which a Taylor series is exact to double precision.
 constexpr double kSmallTurn_rad = 1e-4;
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }

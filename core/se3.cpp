@@ -10,8 +10,8 @@
 namespace motorcade {
 namespace {
 
-/// Below these angles a Taylor series is exact to double precision. The closed forms of the inverse and of the coupling
-/// lose more digits to cancellation, and so leave off earlier.
+/// Angles below which a Taylor series is exact to double precision. The closed forms of the inverse and of the coupling
+/// lose more digits to cancellation, so their series reach farther.
 constexpr double kSmallAngle_rad = 1e-4, kSmallAngleOfInverse_rad = 1e-3, kSmallAngleOfCoupling_rad = 1e-2;
 constexpr double kSmallHalfAngle = 1e-8;  // norm of a quaternion's vector below which its logarithm is linear
 

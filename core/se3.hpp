@@ -31,7 +31,7 @@ class SE3 {
 
   SE3 inverse() const;
   SE3 operator*(const SE3& other) const;
-  /// R p + t, in the order of Eigen's sums. Spelled out, as every source would compile Eigen's product anew.
+  /// R p + t, summed in Eigen's order. It is spelled out because every source would compile Eigen's product anew.
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
     const auto& R = rotation_;
     return {R(0, 0) * p[0] + (R(0, 1) * p[1] + R(0, 2) * p[2]) + translation_[0],
@@ -55,7 +55,7 @@ class SE3 {
 Matrix6d rightJacobianSE3(const Vector6d& xi);
 Matrix6d rightJacobianInverseSE3(const Vector6d& xi);
 
-/// No number in it is infinite or undefined.
+/// True when no number in it is infinite or undefined.
 bool isFinite(const SE3& T);
 
 /// The motion that `motion` becomes when its duration is scaled by `factor`, at constant twist.

@@ -77,7 +77,7 @@ class SpscRing {
   }
   bool closed() const { return closed_.load(std::memory_order_acquire); }
 
-  /// About how many values are held; from any thread.
+  /// Approximate number of values held; any thread may call.
   std::size_t size() const {
     const auto head = head_.load(std::memory_order_acquire);
     return std::min<std::size_t>(tail_.load(std::memory_order_acquire) - head, slots_.size());

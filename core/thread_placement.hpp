@@ -5,13 +5,13 @@
 
 namespace motorcade {
 
-/// Where and how urgently threads run. The default leaves them as they are.
+/// Processors and priority of threads. The default leaves them as they are.
 struct ThreadPlacement {
   std::vector<int> cpus{};    // processors that they may run on; empty: all
   int realtime_priority = 0;  // 1 to 99: SCHED_FIFO, ahead of all that is not; 0: as others
 };
 
-/// Places the calling thread while it lives, and puts it back as it was: workers go from one pipeline to another.
+/// Places the calling thread while this lives, then restores it: workers go from one pipeline to another.
 class PlacedThread {
  public:
   explicit PlacedThread(const ThreadPlacement& placement);
@@ -19,7 +19,7 @@ class PlacedThread {
   PlacedThread(const PlacedThread&) = delete;
   PlacedThread& operator=(const PlacedThread&) = delete;
 
-  /// Why the system refuses a placement, in a sentence; empty when it does not.
+  /// The system's reason for refusing a placement, in a sentence; empty when it accepts.
   const std::string& problem() const { return problem_; }
 
  private:

@@ -17,7 +17,7 @@ void ThreadSpread::occupy(std::size_t index) {
     if (sched_getaffinity(0, sizeof seat.allowed, &seat.allowed) != 0) return;
     seat.thread = gettid();
   }
-  // It moves at once where another is; the others, which may sleep, are kept off where it is then.
+  // A thread on another's processor moves at once. The others, which may sleep, are kept off its new one.
   keepOff(seat);
   seat.cpu.store(sched_getcpu(), std::memory_order_relaxed);
   for (const Seat& other : seats_)

@@ -10,16 +10,16 @@
 
 namespace motorcade {
 
-/// Keeps threads that work together off each other's processors. Where a virtual processor has gone to sleep, Linux may
-/// take it for one that the hypervisor has taken away, and lets a thread that it wakes wait behind the one that woke
-/// it, for milliseconds, while the other processor stands idle. So each thread is kept off the processors on which the
-/// others worked last; it may run on all others. Without effect where there are fewer processors than threads.
+/// Keeps threads that work together off each other's processors. Linux may take a sleeping virtual processor for one
+/// that the hypervisor has taken away. It then lets a woken thread wait for milliseconds behind the thread that woke
+/// it, while the other processor stands idle. So each thread is kept off the processors on which the others worked
+/// last, and may run on all others. Without effect where there are fewer processors than threads.
 class ThreadSpread {
  public:
   explicit ThreadSpread(std::size_t threads) : seats_(threads) {}
 
-  /// Called by the thread of each seat when it begins with something, before others rely on where it is. Costs a few
-  /// nanoseconds where it has not moved.
+  /// Notes where the thread of a seat runs. That thread calls it when it begins work, before others rely on its place.
+  /// Costs a few nanoseconds where the thread has not moved.
   void occupy(std::size_t seat);
 
  private:

@@ -6,10 +6,10 @@
 
 namespace motorcade {
 
-/// Standard deviations of a camera motion that could not be measured, over a tenth of a second. The motion before it is
-/// taken to go on: hard braking (8 m/s^2) changes it by 0.08 m in that time, and a sharp turn by about 0.02 rad.
+/// Standard deviations over a tenth of a second of a camera motion that was not measured, about the motion before it.
+/// Hard braking (8 m/s^2) changes it by 0.08 m in that time, and a sharp turn by about 0.02 rad.
 constexpr double kUnknownMotion_m = 0.3, kUnknownMotion_rad = 0.02, kUnknownMotion_s = 0.1;
-/// Over longer times they grow in proportion, up to these: beyond, nothing is known.
+/// Limits of the standard deviations, which grow in proportion to time: beyond these, nothing is known.
 constexpr double kMaxUnknownMotion_m = 30, kMaxUnknownMotion_rad = 0.5;
 
 inline Matrix6d unknownMotionCovariance(double dt_s = kUnknownMotion_s) {

@@ -10,8 +10,8 @@
 
 namespace motorcade {
 
-/// What the vehicle's own sensors tell of its motion at one moment: of the middle of its rear axle, as wheel speed and
-/// yaw rate on a vehicle's bus.
+/// Motion of the middle of the vehicle's rear axle at one moment, by its own sensors, such as wheel speed and yaw rate
+/// on its bus.
 struct VehicleMotionSample {
   Timestamp stamp;
   double speed_mps = 0;        // ahead; negative in reverse
@@ -20,8 +20,8 @@ struct VehicleMotionSample {
   double yaw_rate_sigma_radps = 0;
 };
 
-/// The samples in the order in which they came, numbered from 0, for readers in other threads. Holds the newest ones
-/// alone; adding asks nothing of the heap.
+/// Samples in the order in which they came, numbered from 0, for readers in other threads. Only the newest ones are
+/// held; adding does not use the heap.
 class VehicleMotionLog {
  public:
   explicit VehicleMotionLog(std::size_t capacity = 4096) : ring_(capacity) {}
@@ -29,7 +29,7 @@ class VehicleMotionLog {
   void add(const VehicleMotionSample& sample);
   /// The number of samples added so far; takes no lock.
   std::uint64_t count() const { return count_.load(std::memory_order_acquire); }
-  /// Those with numbers from `begin` up to, but not including, `end`, as far as they are still held.
+  /// The samples from `begin` up to, but not including, `end`, as far as they are still held.
   std::vector<VehicleMotionSample> read(std::uint64_t begin, std::uint64_t end) const;
 
  private:

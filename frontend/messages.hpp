@@ -10,7 +10,7 @@
 
 #include "core/messages.hpp"
 
-/// The messages between the stages of the front-end, in the order in which they arise. Pixels are of the full-size left
+/// Messages between the stages of the front-end, in the order in which they arise. Pixels are of the full-size left
 /// image.
 namespace motorcade {
 
@@ -32,7 +32,7 @@ struct Features {
   StereoFramePtr frame;
   ImagePyramid left, right;     // empty when the frame is rejected
   std::vector<Corner> corners;  // of the left image, spread over a grid
-  /// Only with the SIFT detector: descriptors of `corners`, and the right image's points with theirs.
+  /// Descriptors of `corners`, and the right image's points with theirs; only with the SIFT detector.
   std::vector<SiftDescriptor> descriptors;
   std::vector<Corner> right_corners;
   std::vector<SiftDescriptor> right_descriptors;
@@ -45,7 +45,8 @@ struct StereoMatch {
   float sigma_px = 0;
 };
 
-/// One match per corner. Without a standard deviation it is one to a whole pixel, of which `refinedMatch` tells more.
+/// One match per corner. A match without a standard deviation is exact to a whole pixel; `refinedMatch` tells more of
+/// it.
 struct StereoMatches {
   FeaturesPtr features;
   std::vector<std::optional<StereoMatch>> of_corner;
@@ -69,8 +70,8 @@ struct OpticalFlow {
 };
 using OpticalFlowPtr = std::shared_ptr<const OpticalFlow>;
 
-/// Position and velocity of a point in the world, estimated from its track over several frames.
-/// Coordinates are in the camera's frame of now, velocities relative to the world in the camera's axes of now.
+/// Position and velocity of a point in the world, estimated from its track over several frames. Coordinates are in the
+/// camera's present frame; velocities are relative to the world, in the axes of that frame.
 struct SceneFlow {
   Eigen::Vector3d p_cam;
   Eigen::Vector3d velocity_mps;

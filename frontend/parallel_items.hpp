@@ -8,8 +8,8 @@
 namespace motorcade {
 
 /// Calls `work(i)` for every i below `count`, on whatever threads the arena has to spare, at least `grain` on one
-/// thread in a row. The items must not depend on each other. Isolated: while a stage waits for its own items here, its
-/// thread does not start on another frame.
+/// thread in a row. The items must not depend on each other. Isolated: a stage that waits for its own items here does
+/// not start on another frame.
 template <class Work>
 void forEachItem(std::size_t count, const Work& work, std::size_t grain = 16) {
   tbb::this_task_arena::isolate([&] {
@@ -20,7 +20,7 @@ void forEachItem(std::size_t count, const Work& work, std::size_t grain = 16) {
   });
 }
 
-/// How many threads may work on items at the same time.
+/// Number of threads that may work on items at the same time.
 inline int threadsForItems() { return tbb::this_task_arena::max_concurrency(); }
 
 }  // namespace motorcade

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Gaps of random place and length (1 to 20 frames): is the error of the motion across each covered by the covariance that the run gives,
-# or is the frame after it reported as lost? Prints a table. Needs jq. Called by perf/robustness.sh.
+# Tests whether a run's covariance covers the error of the motion across gaps of random place and length (1 to 20 frames), or the frame after
+# a gap is reported as lost. Prints a table. Needs jq. Called by perf/robustness.sh.
 #   perf/gaps.sh COUNT "DRIVE ..." DATA_FOLDER OUT_FOLDER
 set -euo pipefail
 count=$1 drives=$2 data=$3 out=$4

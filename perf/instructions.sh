@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How many instructions each stage takes per frame, counted by callgrind on one worker, against perf/instructions.md: a count repeats to .05 %,
+# Counts each stage's instructions per frame by callgrind on one worker, and compares them with perf/instructions.md. A count repeats to .05 %,
 # however busy the machine is.
 #   perf/instructions.sh [BUILD]                     checks; ends with 1 where a stage grew by more than 5 % or exceeds its budget, and with 77
 #                                                    where counts cannot be compared with the recorded ones

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Whether a long run stays as it is: memory, file descriptors and threads of `motorcade run` along laps of `circuit`, which repeats without a
-# seam, and the latency at both ends. Prints one table; exits with 1 where memory, descriptors or threads grow. Latencies are shown only, as
+# Tests that a long run stays as it is: memory, file descriptors and threads of `motorcade run` along laps of `circuit`, which repeats without
+# a seam, and the latency at both ends. Prints one table; exits with 1 where memory, descriptors or threads grow. Latencies are shown only, as
 # they depend on what else the machine does.
 #   perf/long_drive.sh [FRAMES] [OUT_FOLDER]
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what faults do to the results, and writes perf/robustness.md: every fault of `run --inject` on real and rendered drives, with the
+# Measures the effect of faults on the results, and writes perf/robustness.md: every fault of `run --inject` on real and rendered drives, with the
 # drift of the camera and the recall of moving objects against the same drive without faults; scenes that mislead; and the tests of all other
 # faults, from a build by tests/run.sh. Needs jq.
 #   perf/robustness.sh [--gaps N] [--seeds N] [--drives "NAME ..."] [DATA_FOLDER] [OUT_FOLDER]

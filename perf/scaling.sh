@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# How the cost of a frame grows with the image's size, the number of tracks and the objects in view: CPU ms per frame on one thread, images in
-# memory, for the whole process and by stage. Renders what is not there.
+# Measures how the cost of a frame grows with the image's size, the number of tracks and the objects in view: CPU ms per frame on one thread,
+# images in memory, for the whole process and by stage. Renders what is not there.
 #   perf/scaling.sh [DATA_FOLDER] [OUT_FOLDER]
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results on
-# an arm64 processor and on other systems, a long drive, and rendered scenes over ten seeds in both styles. Goes on after a failure; prints one table at its end,
+# Runs what takes too long for every change: clang-tidy on every source, all tests with and without sanitizers, fuzzing, the packages, results
+# on an arm64 processor, other systems and compilers, a long drive, and rendered scenes over ten seeds in both styles. Goes on after a
+# failure; prints one table at its end,
 # and ends with exit code 1 if any step failed. The scenes' figures are in build/nightly/scenes.log and scenes_film.log.
 #   tests/nightly.sh [FUZZ_SECONDS]   per target, default 600
 set -uo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A run's results are the same bytes whatever the processor: with the kernels for any x86-64 instead of those for x86-64-v3, and, where
+# Tests that a run's results are the same bytes on every processor: with the kernels for any x86-64 instead of those for x86-64-v3, and, where
 # qemu-user is installed, on an emulated processor without AVX2 and fused multiplication, for which the C library chooses other functions too.
 #   tests/processors.sh MOTORCADE DRIVE [FRAMES]
 set -euo pipefail

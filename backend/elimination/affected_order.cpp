@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kBands = 5;  // at distances 0, 1, 2 to 3, 4 to 7, 8 to 15; what is farther away comes first
 constexpr int kFarthest = (1 << (kBands - 1)) - 1;
-/// What so many factors share (an offset of all measurements) makes no two of them neighbors.
+/// Number of factors beyond which a shared variable (an offset of all measurements) makes no two of them neighbors.
 constexpr std::size_t kShared = 100;
-/// What so many factors share couples what is eliminated after it: it comes last, too.
+/// Number of factors beyond which a variable couples what is eliminated after it, and so comes last, too.
 constexpr std::size_t kCommon = 20;
 
 constexpr std::size_t kAhead = 4;  // variables of a search that are asked for before they are looked at
@@ -34,8 +34,9 @@ std::span<const VariableId> AffectedOrder::operator()(std::span<const VariableId
   return order_;
 }
 
-/// Breadth first from the touched variables through the whole graph, but not through what very many factors share,
-/// until all variables at hand are reached, or none was for as many steps as before: the others lie far away.
+/// Bands the variables by a breadth-first search from the touched ones, but not through what very many factors share.
+/// The search ends when it has reached all variables at hand, or none for as many steps as before: the rest is far
+/// away.
 void AffectedOrder::bandByDistance(std::span<const VariableId> touched) {
   const int last = static_cast<int>(variables_.size()) - 1;
   const int last_group = std::max(last - 1, 0);  // CCOLAMD wants groups below the number of columns; one more follows

@@ -10,20 +10,20 @@
 
 namespace motorcade {
 
-/// Orders the variables that an update eliminates anew: with little fill, and the nearer to the newest measurements,
-/// the later.
+/// Orders the variables that an update eliminates anew: with little fill, and later the nearer they are to the newest
+/// measurements.
 ///
-/// The next measurements will touch variables near those that were touched now (a vehicle drives on, and observes what
-/// lies close to what it observed). What stands near the root is cheap to touch, so the order goes by bands of
-/// distance in the factor graph, each twice as wide as the one before; within a band, CCOLAMD orders for little fill.
-/// The newest variables come last of all: their covariances, which everybody asks for, then cost next to nothing. With
-/// them comes what very many factors share.
+/// The next measurements will touch variables near those touched now: a vehicle drives on, and observes what lies close
+/// to what it observed. Variables near the root are cheap to touch, so the order goes by bands of distance in the
+/// factor graph, each twice as wide as the one before. Within a band, CCOLAMD orders for little fill. The newest
+/// variables come last, with what very many factors share: their covariances, which everybody asks for, then cost next
+/// to nothing.
 class AffectedOrder {
  public:
   AffectedOrder(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
 
-  /// `factors` and the separators of `orphans` are the terms over the `variables`; the `newest` are among the touched.
-  /// The result lasts until the next call.
+  /// Orders the `variables`; the `factors` and the separators of the `orphans` are the terms over them, and the
+  /// `newest` are among the touched. The result lasts until the next call.
   std::span<const VariableId> operator()(std::span<const VariableId> variables, std::span<const FactorId> factors,
                                          std::span<const int> orphans, std::span<const VariableId> touched,
                                          std::span<const VariableId> newest = {});

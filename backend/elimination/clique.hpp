@@ -25,8 +25,8 @@ struct Clique {
   /// (size + 1) x frontal_size: columns are the rows of [R S d], so R^T above, S^T, and d^T last.
   double* panel = nullptr;
   std::vector<int> singular;  // frontal scalars without information
-  /// What elimination leaves on the separator and the parent's front gathers: the update matrix H, packed, and
-  /// the contribution g to the right-hand side. H is null where it was given back.
+  /// Update matrix H, packed, and contribution g to the right-hand side. Elimination leaves both on the separator, and
+  /// the parent's front gathers them. H is null where it was given back.
   double *update_matrix = nullptr, *contribution = nullptr;
   bool made_again = false;    // H, for the parent's front to gather it
   std::int64_t attached = 0;  // when the clique was hung below its parent, by the number of the tree's elimination

@@ -4,13 +4,13 @@
 
 namespace motorcade {
 
-/// Dense kernels for the elimination of one clique. Its variables' information is gathered in a `panel`, which the
-/// elimination turns into the clique's rows of R, transposed; the rest passes to the parent by an outer product of the
-/// panel's lower rows.
+/// Dense kernels for the elimination of one clique. A `panel` gathers the information of the clique's variables, and
+/// elimination turns it into the clique's rows of R, transposed. An outer product of the panel's lower rows passes the
+/// rest to the parent.
 ///
-/// Matrices are column-major. A leading dimension (`ld...`) is a multiple of 4 and at least the number of rows: the
+/// Matrices are column-major. A leading dimension (`ld...`) is a multiple of 4 and at least the number of rows. The
 /// rows that pad it belong to the buffer, hold anything, and are written to, as is the strictly upper triangle within 4
-/// x 4 blocks on the diagonal. Neither is ever read for a result. Buffers need no alignment beyond a double's; nothing
+/// x 4 blocks on the diagonal; neither is ever read for a result. Buffers need no alignment beyond a double's. Nothing
 /// outside of ld * columns is touched, and nothing is allocated. Large matrices are slower when ld is a multiple of
 /// 512, as their columns compete for the same cache lines.
 
@@ -29,13 +29,12 @@ constexpr double kSingularPivot = 1e-13;
 
 /// Factorizes a panel of information in place: [H11; H21; g^T] becomes [L11; L21; d^T].
 ///
-/// A singular pivot, or one not finite, becomes 1 and the column below it zero, so that the scalar's delta is zero; its
-/// index is appended to `singular`. Returns the smallest ratio of a pivot to its diagonal entry before elimination
-/// among the others, at most 1.
+/// A singular pivot, or one that is not finite, becomes 1 and the column below it zero, so that the scalar's delta is
+/// zero; its index is appended to `singular`. Returns the smallest ratio of any other pivot to its diagonal entry
+/// before elimination, at most 1.
 double factorizePanel(const Panel& panel, std::vector<int>& singular);
 
-/// C -= A A^T, lower triangle. A is n x k and may be the lower rows of a panel: of its padding nothing past the panel's
-/// end is read.
+/// C -= A A^T, lower triangle. A is n x k and may be the lower rows of a panel; nothing past the panel's end is read.
 void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, int k);
 
 /// H += J^T J, lower triangle, of cols x cols. J is rows x cols without padding.

@@ -15,9 +15,9 @@ void backSubstitute(const Panel& panel, const double* x_separator, double* x_fro
 /// panel's last row, and g2 -= L21 d. The d of the `singular` scalars that the factorization found is zero.
 void forwardSubstitute(const Panel& panel, std::span<const int> singular, double* g);
 
-/// Eliminates several right-hand sides that leave the panel as it is: of each scalar but the panel's last row, one row
-/// of `y` with `stride` numbers, a multiple of 4. Y1 = L11^-1 G1 replaces the upper rows, and G2 - L21 Y1 the lower
-/// ones. No scalar is singular.
+/// Eliminates several right-hand sides, and leaves the panel as it is. Each scalar has one row of `y` with `stride`
+/// numbers, a multiple of 4; the panel's last row has none. Y1 = L11^-1 G1 replaces the upper rows, and G2 - L21 Y1 the
+/// lower ones. No scalar is singular.
 void forwardSubstitute(const Panel& panel, double* y, int stride);
 
 }  // namespace motorcade

@@ -5,8 +5,8 @@
 namespace motorcade {
 namespace {
 
-/// A column joins its parent's clique although that adds zeros to it when the clique still has few frontals or the
-/// zeros are few: each front passes a matrix on, which costs as much as the elimination of a pose or two.
+/// Limits up to which a column joins its parent's clique although that adds zeros: a clique with few frontals, or few
+/// zeros. Each front passes a matrix on, which costs as much as the elimination of a pose or two.
 constexpr int kFewFrontals = 18;    // scalars: three poses
 constexpr double kZeroShare = 0.1;  // of the clique's scalars
 
@@ -38,7 +38,7 @@ void EliminationPattern::analyze(std::span<const int> scalars) {
   formGroups(scalars);
 }
 
-/// The column structures: each is the union of its terms and of what the columns below it leave over.
+/// Finds the column structures: each is the union of its terms and of what the columns below it leave over.
 void EliminationPattern::mergeColumns() {
   children_head_.assign(count_, -1);
   children_next_.assign(count_, -1);
@@ -69,7 +69,7 @@ void EliminationPattern::mergeColumns() {
   }
 }
 
-/// Supernodes: a column whose separator is (nearly) all of its parent's clique joins that clique.
+/// Forms supernodes: a column whose separator is (nearly) all of its parent's clique joins that clique.
 void EliminationPattern::formGroups(std::span<const int> scalars) {
   groups_.clear();
   group_scalars_.clear();

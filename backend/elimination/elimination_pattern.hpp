@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// The symbolic part of an elimination: which variables each clique of the result holds. Positions count the variables
-/// in their elimination order, then the boundary.
+/// Symbolic part of an elimination: which variables each clique of the result holds. Positions count the variables in
+/// their elimination order, then the boundary.
 class EliminationPattern {
  public:
   struct Group {
@@ -17,12 +17,12 @@ class EliminationPattern {
     int parent = -1;  // group
   };
 
-  /// `boundary` positions follow the `count` eliminated ones.
+  /// Begins a pattern of `count` eliminated positions, which `boundary` positions follow.
   void begin(int count, int boundary);
-  /// A term over these positions. False, and it is no term, when all of them lie in the boundary. Terms are numbered
-  /// as they come.
+  /// Adds a term over these positions. Returns false, and adds none, when all of them lie in the boundary. Terms are
+  /// numbered as they come.
   bool addTerm(std::span<const int> positions);
-  /// `scalars`: size of the variable at each position, boundary included.
+  /// Finds the groups; `scalars` are the sizes of the variables at each position, boundary included.
   void analyze(std::span<const int> scalars);
 
   const std::vector<Group>& groups() const { return groups_; }  // parents before children

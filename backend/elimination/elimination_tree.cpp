@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kSequenceStep = std::int64_t{1} << 30;  // leaves room for variables that are lifted in between
 
-/// The slot keeps the memory of its lists.
+/// Empties a clique's slot, which keeps the memory of its lists.
 void clear(Clique& clique) {
   clique.variables.clear();
   clique.row_in_parent.clear();
@@ -31,7 +31,7 @@ int EliminationTree::ownerOf(std::span<const VariableId> variables) const {
 }
 
 std::int64_t EliminationTree::sequence(int clique) const {
-  // By the last frontal: the first may have joined its parent's clique past others.
+  // The last frontal tells it: the first may have joined its parent's clique past others.
   return sequence_[(*this)[clique].frontalVariables().back().value];
 }
 

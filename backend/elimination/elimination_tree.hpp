@@ -10,7 +10,7 @@
 namespace motorcade {
 
 /// R as a tree of cliques (the Bayes tree of Kaess et al. 2012): new information touches only the cliques from where it
-/// enters up to the root. Holds which clique has which variables and factors, what hangs below what, and the
+/// enters up to the root. Holds the variables and factors of each clique, the links between cliques, and the
 /// elimination order. An Eliminator adds cliques and computes their matrices.
 class EliminationTree {
  public:
@@ -22,9 +22,9 @@ class EliminationTree {
   int ownerOf(std::span<const VariableId> variables) const;
   /// Appends the cliques with the variable among their frontals or in their separator.
   void appendCliquesWith(VariableId v, std::vector<int>& found) const;
-  /// Sorted: the cliques and all above them, up to the roots.
+  /// Returns the cliques and all above them, up to the roots, sorted.
   std::vector<int> withAncestors(std::vector<int> cliques) const;
-  /// In ascending order.
+  /// All cliques, in ascending order.
   std::vector<int> cliques() const;
   int rootOf(int clique) const;
   const std::vector<int>& roots() const { return roots_; }
@@ -32,27 +32,28 @@ class EliminationTree {
   /// Position in the elimination order: children come before parents.
   std::int64_t sequence(int clique) const;
 
-  /// For variables whose ids are below `slots`.
+  /// Makes room for variables whose ids are below `slots`.
   void makeRoom(std::size_t slots);
-  /// The variables become the last ones of the order.
+  /// Makes the variables the last ones of the order.
   void appendToOrder(std::span<const VariableId> variables);
-  /// Puts a variable behind those of a clique and before all that are above it. False, and nothing is done, when the
-  /// order has no room left there.
+  /// Puts a variable behind those of a clique and before all that are above it. Returns false, and does nothing, when
+  /// the order has no room left there.
   bool putBehind(VariableId v, int clique);
-  /// The variable is gone; its id may be used again.
+  /// Forgets a variable that is gone; its id may be used again.
   void forget(VariableId v);
 
-  /// A clique of its own, without factors, children and matrices.
+  /// Adds a clique of its own, without factors, children and matrices.
   int add(std::span<const VariableId> variables, int frontals);
   /// Hangs a clique below another one, or makes it a root where that is -1.
   void hang(int clique, int parent);
-  /// Takes out cliques that hold all their ancestors up to some clique that stays or to the root.
+  /// Variables, factors and orphans of the cliques that `remove` took out.
   struct Removed {
     std::vector<VariableId> variables;  // in elimination order
     std::vector<FactorId> factors;
     std::vector<int> orphans;  // children that stay
   };
-  /// The result lasts until the next call.
+  /// Takes out cliques that hold all their ancestors up to some clique that stays or to the root. The result lasts
+  /// until the next call.
   Removed& remove(std::span<const int> cliques);
 
   void addFactor(int owner, FactorId factor) { cliques_[owner].factors.push_back(factor); }

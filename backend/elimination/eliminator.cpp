@@ -28,7 +28,7 @@ std::span<const int> Eliminator::eliminate(const Elimination& problem) {
   return created_;
 }
 
-/// The terms are the factors, then the separators of the orphans inside.
+/// Finds the pattern. Its terms are the factors, then the separators of the orphans inside.
 void Eliminator::findPattern(const Elimination& problem) {
   scalars_.clear();
   for (const auto& variables : {problem.order, problem.boundary})
@@ -73,7 +73,7 @@ void Eliminator::attach(int clique, int parent) {
   for (const VariableId v : child.separator()) child.row_in_parent.push_back(position_[v.value]);
 }
 
-/// Sizes and memory of a clique from its variables.
+/// Sets the sizes and the memory of a clique from its variables.
 void Eliminator::layOut(Clique& clique) {
   clique.frontal_size = clique.size = 0;
   for (const VariableId v : clique.frontalVariables()) clique.frontal_size += graph_.sizeOf(v);
@@ -135,7 +135,7 @@ void Eliminator::refresh(int id) {
 void Eliminator::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {
   Clique& clique = tree_[id];
   const int n = clique.frontal_size, rest = clique.separatorSize(), stride = clique.panelStride();
-  // d of the change alone, then added to the former d.
+  // Computes d of the change alone, then adds it to the former d.
   former_.resize(n);
   double* last_row = clique.panel + clique.size;
   for (int j = 0; j < n; ++j) former_[j] = last_row[j * stride];

@@ -14,8 +14,8 @@
 
 namespace motorcade {
 
-/// The variables to eliminate, in their order. The roots that result hang below `parent`, in whose clique the
-/// `boundary` lies, and so do orphans that have no variable in `order`.
+/// Variables to eliminate, in their order. The new roots, and orphans without a variable in `order`, hang below
+/// `parent`, whose clique holds the `boundary`.
 struct Elimination {
   std::span<const VariableId> order, boundary = {};
   std::span<const FactorId> factors;  // each with a variable in `order`, all in `order` and `boundary`
@@ -28,29 +28,29 @@ struct Elimination {
 /// cliques' matrices up to date.
 class Eliminator {
  public:
-  /// Update matrices of cliques that hung where they are for so many eliminations are given back, and made again for a
-  /// front that gathers them; with 0 all are kept.
+  /// Update matrices of cliques that kept their place for `kept_eliminations` are given back, and made again for a
+  /// front that gathers them. With 0 all are kept.
   Eliminator(const FactorGraph& graph, EliminationTree& tree, int kept_eliminations = 0)
       : graph_(graph), tree_(tree), front_(graph, tree), update_matrices_(tree, front_, kept_eliminations) {}
   Eliminator(const Eliminator&) = delete;  // its parts refer to each other
   Eliminator& operator=(const Eliminator&) = delete;
 
-  /// The new cliques, parents before children; they last until the next call.
+  /// Eliminates, and returns the new cliques, parents before children; they last until the next call.
   std::span<const int> eliminate(const Elimination& problem);
-  /// Moves a variable up the tree: of the variables of these cliques, its own and the next ones above it, it becomes
-  /// the last one. What R says stays, and nothing above the cliques changes. False, and nothing is done, when the order
-  /// has no room left there.
+  /// Moves a variable up the tree: it becomes the last of the variables of these cliques, its own and the next ones
+  /// above it. What R says stays, and nothing above the cliques changes. Returns false, and does nothing, when the
+  /// order has no room left there.
   bool lift(VariableId v, std::span<const int> cliques);
   /// See EliminationTree.
   EliminationTree::Removed& remove(std::span<const int> cliques);
-  /// Eliminates a clique anew, after its children: the linear models of its factors or what its children pass on
+  /// Eliminates a clique anew, after its children, as the linear models of its factors or its children's contributions
   /// changed.
   void refresh(int clique);
-  /// Adds `change` to the right-hand side of a clique's front, and what that leaves on the separator to `parent_change`
-  /// (empty: nowhere), in the rows of the parent's front.
+  /// Adds `change` to the right-hand side of a clique's front. What that leaves on the separator is added to
+  /// `parent_change` (empty: nowhere), in the rows of the parent's front.
   void shiftRightHandSide(int clique, std::span<double> change, std::span<double> parent_change);
-  /// [H g; g^T c], lower triangle, that factors leave on `separator` when `eliminated` are eliminated from them alone;
-  /// the tree stays.
+  /// Returns [H g; g^T c], lower triangle, that factors leave on `separator` when `eliminated` are eliminated from them
+  /// alone. The tree stays.
   Eigen::MatrixXd marginal(std::span<const VariableId> eliminated, std::span<const VariableId> separator,
                            std::span<const FactorId> factors);
 

@@ -5,12 +5,12 @@
 namespace motorcade {
 namespace {
 
-/// With the 4 x 4 blocks on the diagonal whole, as the kernels read them.
+/// Clears the lower triangle, and the 4 x 4 blocks on the diagonal whole, as the kernels read them.
 void clearLowerTriangle(double* matrix, int stride, int columns) {
   for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
 }
 
-/// Mostly the six or three scalars of a pose.
+/// Adds scalars, mostly the six or three of a pose.
 inline void addTo(double* to, const double* from, int count) {
   if (count == 6) {
     for (int i = 0; i < 6; ++i) to[i] += from[i];
@@ -48,13 +48,13 @@ void Front::gather(const Clique& clique, double* panel) {
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) addChild(clique, tree_[child]);
 }
 
-/// What the eliminated frontals take off the separator.
+/// Subtracts from the separator what the eliminated frontals take off it.
 void Front::subtractEliminated(const Clique& clique) {
   const int n = clique.frontal_size;
   subtractOuterProduct(update_matrix_.data(), update_stride_, clique.panel + n, clique.panelStride(), update_size_, n);
 }
 
-/// An empty front of the clique's size.
+/// Begins an empty front of the clique's size.
 void Front::begin(const Clique& clique) {
   update_size_ = clique.separatorSize() + 1;
   update_stride_ = padded(update_size_);
@@ -113,13 +113,13 @@ void Front::addChild(const Clique& clique, const Clique& child) {
   addRightHandSide(clique, child.contribution);  // which holds it when it changed alone
 }
 
-/// Of the scalars in `spans_`.
+/// Adds g at the scalars in `spans_`.
 void Front::addRightHandSide(const Clique& clique, const double* g) {
   for (const RowSpan& span : spans_)
     for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += g[span.from + i];
 }
 
-/// A span must not reach across the border between panel and update matrix.
+/// Splits spans at the border between panel and update matrix, which no span may cross.
 void Front::splitAtFrontals(int frontal_size) {
   for (std::size_t i = 0; i < spans_.size(); ++i) {
     RowSpan& span = spans_[i];
@@ -151,7 +151,7 @@ void Front::addSymmetric(const Clique& clique, const ColumnOf& source, std::span
   }
 }
 
-/// A column of the front's lower triangle, such that [row] is the entry.
+/// Returns a column of the front's lower triangle, indexed by row.
 double* Front::column(const Clique& clique, int column) {
   const int n = clique.frontal_size;
   if (column < n) return panel_ + column * clique.panelStride();

@@ -8,16 +8,17 @@
 
 namespace motorcade {
 
-/// The dense work of an elimination, a clique at a time: gathers its front [H g; g^T c] from the linear models of its
-/// factors and from what its children pass on, and factorizes it.
+/// Dense work of an elimination, one clique at a time. Gathers the clique's front [H g; g^T c] from the linear models
+/// of its factors and from what its children pass on, and factorizes it.
 class Front {
  public:
   Front(const FactorGraph& graph, const EliminationTree& tree) : graph_(graph), tree_(tree) {}
 
-  /// The children have been eliminated, and have their update matrices. A scalar that no factor constrains keeps its x.
-  /// Returns the smallest pivot over its diagonal entry before elimination, at most 1; 0 where a scalar was singular.
+  /// Eliminates a clique whose children have been eliminated and have their update matrices. A scalar that no factor
+  /// constrains keeps its x. Returns the smallest pivot over its diagonal entry before elimination, at most 1; 0 where
+  /// a scalar was singular.
   double eliminate(Clique& clique);
-  /// Fills the update matrix of a clique as its elimination did; all else of the clique stays.
+  /// Fills the update matrix of a clique as its elimination did; the rest of the clique stays.
   void makeUpdateMatrix(Clique& clique);
   /// [H g; g^T c], lower triangle, that the newest clique leaves on its separator.
   Eigen::MatrixXd schurComplement() const;

@@ -45,7 +45,7 @@ std::span<const int> Ordering::order(std::span<const int> group) {
   int stats[CCOLAMD_STATS];
   if (!ccolamd(rows_, columns_, static_cast<int>(row_numbers_.size()), row_numbers_.data(), start_.data(), knobs, stats,
                members_.data())) {
-    // Whatever it disliked, any order that keeps the groups is right, if with more fill.
+    // Any order that keeps the groups is right where CCOLAMD fails, if with more fill.
     std::iota(start_.begin(), start_.end(), 0);
     std::ranges::stable_sort(start_.begin(), start_.end() - 1, {}, [&](int column) { return group[column]; });
   }

@@ -5,14 +5,14 @@
 
 namespace motorcade {
 
-/// An elimination order with little fill for the columns of a sparse matrix: constrained column approximate minimum
+/// Elimination order with little fill for the columns of a sparse matrix, by constrained column approximate minimum
 /// degree (CCOLAMD). Add rows, then order. Keeps its memory for the next time.
 class Ordering {
  public:
   void begin(int columns);
-  /// A row with entries in these columns.
+  /// Adds a row with entries in these columns.
   void addRow(std::span<const int> columns);
-  /// Columns of a higher `group` come later. The result lists columns in order, and lasts until the next `begin`.
+  /// Orders the columns; those of a higher `group` come later. The result lasts until the next `begin`.
   std::span<const int> order(std::span<const int> group);
 
  private:

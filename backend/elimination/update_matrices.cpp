@@ -5,7 +5,7 @@
 namespace motorcade {
 namespace {
 
-/// Cliques in a row above each other without an update matrix: to make that of the uppermost takes those of the others.
+/// Most cliques without an update matrix in a row: making the uppermost one's matrix takes those of all below.
 constexpr int kMostInARow = 16;
 
 }  // namespace
@@ -30,7 +30,7 @@ bool UpdateMatrices::mayGiveBack(int clique) const {
   return in_a_row <= kMostInARow;
 }
 
-/// Of the cliques without an update matrix that hang below a clique in a row.
+/// Length of the longest row of cliques without an update matrix below a clique.
 int UpdateMatrices::depthWithout(int clique) const {
   int depth = 0;
   for (int child = tree_[clique].first_child; child >= 0; child = tree_[child].next_sibling)

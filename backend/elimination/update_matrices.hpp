@@ -10,30 +10,29 @@
 
 namespace motorcade {
 
-/// The memory of the cliques' update matrices. They are most of a tree's memory, and needed only where the parent is
-/// eliminated anew without the clique: near the root all the time, farther down hardly ever. Old ones are given back,
-/// and made again where a front gathers them.
+/// Memory of the cliques' update matrices. They are most of a tree's memory, and needed only where the parent is
+/// eliminated anew without the clique: near the root always, farther down hardly ever. Old ones are given back, and
+/// made again where a front gathers them.
 class UpdateMatrices {
  public:
-  /// A clique's is old when it has hung where it is for over `kept_eliminations`; with 0 all are kept.
+  /// Update matrices are old when their clique has kept its place for over `kept_eliminations`; with 0 all are kept.
   UpdateMatrices(EliminationTree& tree, Front& front, int kept_eliminations)
       : tree_(tree), front_(front), kept_eliminations_(kept_eliminations) {}
 
   void beginElimination() { ++eliminations_; }
-  /// The clique was hung below its parent.
+  /// Notes that the clique was hung below its parent.
   void noteAttached(int clique);
   void giveBackOld();
 
-  /// Memory for a clique that has none.
+  /// Takes memory for a clique that has none.
   void take(Clique& clique) { clique.update_matrix = memory_.take(clique.updateMatrixLength()); }
-  /// The same for one that may have it still.
+  /// Takes memory for a clique that may have it still.
   void takeAgain(Clique& clique);
   void giveBack(Clique& clique);
 
-  /// Makes those again that the clique's front gathers.
+  /// Makes the missing matrices again that the clique's front gathers.
   void makeBelow(const Clique& clique);
-  /// Gives them back, but not those of cliques that were attached just now: these are near the root, and will be
-  /// gathered again.
+  /// Gives them back, but not those of cliques attached just now, which are near the root and will be gathered again.
   void giveBackMadeAgainBelow(const Clique& clique);
 
   std::size_t heldBytes() const { return memory_.heldBytes(); }

@@ -11,7 +11,7 @@ namespace motorcade {
 /// S with S^T S = covariance^-1; empty when the covariance is not positive definite.
 std::optional<Matrix6d> squareRootInformation(const Matrix6d& covariance);
 
-/// How much a factor's residual counts.
+/// Whitening and robust weighting of a factor's residual.
 struct PoseNoise {
   Matrix6d sqrt_information = Matrix6d::Identity();
   RobustLoss loss = RobustLoss::kNone;

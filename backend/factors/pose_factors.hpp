@@ -7,10 +7,10 @@
 
 /// The factors of multibody VSLAM (Reddy et al. 2016, section V; anchors after Kim et al. 2010).
 ///
-/// The paper prints the residuals of equations 3 and 4 as f(z_{i-1}, v_i) - z_{i-1} and h(z_{i'}, e) - z_{i'}: both
-/// compare a prediction with the pose it was made from. They are meant as f(z_{i-1}, v_i) - z_i and h(z_{i'}, e) - z_i,
-/// and read so here, with the difference of two poses as log(predicted^-1 * actual). A measured pose M = true * exp(n),
-/// n ~ (0, covariance) in all of them.
+/// Equations 3 and 4 of the paper print the residuals as f(z_{i-1}, v_i) - z_{i-1} and h(z_{i'}, e) - z_{i'}, which
+/// compare a prediction with the pose it was made from. Here they are f(z_{i-1}, v_i) - z_i and h(z_{i'}, e) - z_i, as
+/// they are meant, with log(predicted^-1 * actual) as the difference of two poses.
+/// In all of them a measured pose is M = true * exp(n), n ~ (0, covariance).
 namespace motorcade {
 
 /// r = log(mean^-1 * T)
@@ -63,9 +63,9 @@ struct SmoothMotionModel {
 };
 using SmoothMotionFactor = PoseFactor<SmoothMotionModel, 3>;
 
-/// White noise on acceleration of density q makes the mean velocities of two adjacent intervals differ by q (dt1 + dt2)
-/// / 3, but such differences are correlated from one to the next (1/4); q (dt1 + dt2) / 2, independent, has the right
-/// variance over many intervals.
+/// Noise of a smooth motion factor. White noise on acceleration of density q makes the mean velocities of two adjacent
+/// intervals differ by q (dt1 + dt2) / 3, but each difference is correlated with the next (1/4).
+/// An independent q (dt1 + dt2) / 2 has the right variance over many intervals.
 PoseNoise smoothMotionNoise(const AccelerationNoise& acceleration, double dt_before_s, double dt_after_s);
 
 }  // namespace motorcade

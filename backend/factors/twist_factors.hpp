@@ -3,7 +3,7 @@
 #include "backend/graph/factor.hpp"
 #include "core/constant_twist.hpp"
 
-/// How vehicles move between frames.
+/// Factors on how vehicles move between frames.
 namespace motorcade {
 
 /// White noise on acceleration between the poses and twists of a body at two moments (Barfoot, State Estimation for
@@ -33,12 +33,12 @@ class ConstantTwistFactor final : public JacobianFactor {
   Matrix6d root_;  // of the information, in the axes of travel
 };
 
-/// How a body travels, as a vector [lever; yaw; pitch]: its rear axle may be `lever` behind its origin, and the axes of
-/// travel (x ahead, z up) are the body's turned by R_z(yaw) R_y(pitch). The body's own axes are its gauge and stay as
-/// they were at birth: where the travel goes is learned without turning the whole path.
+/// Axes of travel of a body, from a vector [lever; yaw; pitch]. Its rear axle may be `lever` behind its origin, and the
+/// axes of travel (x ahead, z up) are the body's turned by R_z(yaw) R_y(pitch). The body's own axes are its gauge and
+/// stay as they were at birth, so the direction of travel is learned without turning the whole path.
 Eigen::Matrix3d travelAxes(const SmallVector& travel);
 
-/// How far a vehicle departs from rolling: standard deviations of the velocity across its own axis and of its climbing.
+/// Departures of a vehicle from rolling: standard deviations of its velocity sideways and of its climbing.
 struct RollingNoise {
   double sideways_mps = 0.3, vertical_mps = 0.2;
 };

@@ -12,7 +12,7 @@
 namespace motorcade {
 
 struct FilterBackend::State {
-  /// As of the object's last observation; predicted frames are read from a copy of the filter.
+  /// State of an object at its last observation; predicted frames are read from a copy of the filter.
   struct Object {
     ObjectFilter filter;
     SE3 T_world_body;  // the end of the chain

@@ -9,15 +9,15 @@
 
 namespace motorcade {
 
-/// The paper's baseline: odometry is chained, and every object has a constant-velocity extended Kalman filter of its
-/// own (pose and body twist) on poses that are chained from its motions from frame to frame, each measured from the
-/// points that both frames show. Nothing is remembered but the state, the chain and the frame before. Frames are final
-/// as soon as they are published.
+/// The paper's baseline: odometry is chained, and every object has its own constant-velocity extended Kalman filter
+/// (pose and body twist). The filter corrects by poses chained from the object's motions, each measured from the points
+/// that two successive frames show. Nothing is remembered but the state, the chain and the frame before. Frames are
+/// final as soon as they are published.
 ///
-/// A chained pose is taken with the covariance of its newest link: what came in before it moves the pose for good. That
-/// its errors add up the filter cannot know. Filtering the links themselves is worse: a point's measurement of frame i
-/// serves two links, into i and out of it, with opposite signs, so that errors cancel in the chain but not in filtered
-/// links (three times the error of motion on the rendered scenes).
+/// A chained pose enters with the covariance of its newest link; the filter cannot know that errors of the chain add
+/// up. Filtering the links themselves is worse: three times the error of motion on the rendered scenes. A point's
+/// measurement of frame i serves two links with opposite signs, so errors cancel in the chain but not in filtered
+/// links.
 class FilterBackend final : public Backend {
  public:
   using Params = ObjectFilter::Params;

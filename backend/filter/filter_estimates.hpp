@@ -10,14 +10,14 @@
 
 namespace motorcade {
 
-/// What a filtering back-end publishes of a camera whose odometry is chained: as yet without objects. The covariance of
-/// its motion is over `motion_frames`, at most those that the path keeps.
+/// Estimate of a filtering back-end's camera, whose odometry is chained; objects are still missing. The covariance of
+/// its motion spans `motion_frames`, at most those that the path keeps.
 FrameEstimate cameraEstimate(const FrameMeasurements& measurements, const CameraPath& path, int motion_frames);
-/// And of an object, from a filter at the observation's time.
+/// Estimate of an object, from a filter at the observation's time.
 ObjectEstimate objectEstimate(const ObjectObservation& observation, const ObjectFilter& filter);
 
-/// One frame of a filtering back-end, whose estimates are final at once. `state` has a path, `motion_frames`,
-/// objects by track, counters, and `observe`, which gives an object's filter at the time of an observation, or nothing.
+/// Processes one frame of a filtering back-end, whose estimates are final at once. `state` has a path, `motion_frames`,
+/// objects by track, counters, and `observe`, which returns an object's filter at an observation's time, or nothing.
 template <class State>
 EstimatesPtr filtered(State& state, const FrameMeasurements& m) {
   state.path.add(m);

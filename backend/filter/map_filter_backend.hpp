@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// Odometry is chained, and every object has a constant-velocity extended Kalman filter of its own (pose and body
-/// twist) on the front-end's poses, which come from a map of the object's points averaged over frames: more than the
-/// paper's baseline has. Frames are final as soon as they are published.
+/// Odometry is chained, and every object has its own constant-velocity extended Kalman filter (pose and body twist) on
+/// the front-end's poses. These come from a map of the object's points averaged over frames, which the paper's baseline
+/// lacks. Frames are final as soon as they are published.
 class MapFilterBackend final : public Backend {
  public:
   using Params = ObjectFilter::Params;

@@ -46,7 +46,7 @@ std::optional<double> ObjectFilter::correct(const SE3& T_world_body, const Matri
   return normalized;
 }
 
-/// Innovations larger than expected ask for more process noise: a factor per time constant, within bounds.
+/// Adapts the process noise to the innovations, by a factor per time constant, within bounds: larger ones raise it.
 void ObjectFilter::adaptNoise(double normalized_innovation) {
   constexpr double kMostPerStep = 10.0;   // a single wild innovation does not decide
   constexpr double kMostInTotal = 100.0;  // in variance: a tenth to ten times the accelerations that were set

@@ -13,7 +13,7 @@ constexpr std::size_t kLine_bytes = 64;
 constexpr std::uint32_t kChunkLines = 1U << 14;  // a megabyte
 constexpr std::align_val_t kAlignment{kLine_bytes};
 
-/// Of sizes in cache lines: 1 to 8, then four to each doubling.
+/// Class of a size in cache lines: one each for 1 to 8, then four to each doubling.
 std::size_t sizeClass(std::uint32_t lines) {
   if (lines <= 8) return lines - 1;
   const int octave = std::bit_width(lines - 1) - 1;  // 2^octave < lines <= 2^(octave + 1)
@@ -23,8 +23,8 @@ std::size_t sizeClass(std::uint32_t lines) {
 
 }  // namespace
 
-/// Lies in the 16 bytes before a block's first line, which are the last ones of the block below it. Behind a chunk's
-/// last block lies the tag of an empty one that is never idle.
+/// Tag of a block, in the 16 bytes before its first line, which are the last ones of the block below it. Behind a
+/// chunk's last block lies the tag of an empty one that is never idle.
 struct BlockPool::Tag {
   std::uint32_t lines = 0, lines_below = 0;  // of this block and of the one below it; 0: it is the first
   std::uint64_t idle = 0;
@@ -84,8 +84,8 @@ void BlockPool::give(double* data) {
   insert(block, whole.lines);
 }
 
-/// The smallest of the first few of its class that are large enough, else the first of the next class that has any;
-/// null when there is none.
+/// Finds the smallest large enough among the first few blocks of the class, else the first of the next class that has
+/// any; null when there is none.
 BlockPool::Idle* BlockPool::fitting(std::uint32_t lines) {
   constexpr int kLooks = 16;
   const std::size_t first = sizeClass(lines);

@@ -8,14 +8,14 @@
 
 namespace motorcade {
 
-/// Memory for small matrices that come and go, cut from large chunks. Neighbors that come back become one block again,
-/// so that what is held follows the largest demand so far and not the largest of each size: below that the heap is
-/// hardly ever asked again. Blocks begin on a cache line.
+/// Memory for small matrices that come and go, cut from large chunks. Returned neighbors become one block again, so the
+/// pool grows with the largest demand so far, not with the largest of each size. Below that demand it hardly ever asks
+/// the heap. Blocks begin on a cache line.
 class BlockPool {
  public:
-  /// At least `doubles` numbers, uninitialized.
+  /// Takes at least `doubles` numbers, uninitialized.
   double* take(std::size_t doubles);
-  /// Returns a block, or nothing.
+  /// Returns a block to the pool; null is ignored.
   void give(double* block);
 
   std::size_t heldBytes() const { return held_bytes_; }  // of all chunks

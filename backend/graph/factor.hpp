@@ -12,8 +12,8 @@
 
 namespace motorcade {
 
-/// A term of the least-squares problem over a few variables: a JacobianFactor or an InformationFactor, which say how
-/// the quadratic in the stacked deltas of the variables is stated.
+/// A term of the least-squares problem over a few variables. JacobianFactor and InformationFactor state the quadratic
+/// in the variables' stacked deltas in different ways.
 class Factor {
  public:
   Factor(const Factor&) = delete;
@@ -21,7 +21,7 @@ class Factor {
   virtual ~Factor() = default;
 
   std::span<const VariableId> variables() const { return variables_; }
-  /// The matrix that `linearize` fills has so many rows.
+  /// Number of rows of the matrix that `linearize` fills.
   int rows() const { return rows_; }
 
   /// Linearizes at `values`, one per variable in their order. Fills rows() x (sum of dimensions + 1); the last column
@@ -57,11 +57,11 @@ class InformationFactor : public Factor {
     g_c = term.row(rows() - 1);
   }
 
-  /// The factor's own model, if it is what `linearize` gives at these `values`; null elsewhere. It lasts as long as the
-  /// factor.
+  /// The factor's own model, if it equals the result of `linearize` at these `values`; else null. It lasts as long as
+  /// the factor.
   virtual const Quadratic* heldModel(std::span<const Value* const>) const { return nullptr; }
 
-  /// A factor with the knowledge that is left when variables go; null when nothing is.
+  /// A factor with the information that remains when variables go; null when none does.
   virtual std::unique_ptr<InformationFactor> without(std::span<const VariableId>) const { return nullptr; }
 
  protected:

@@ -5,7 +5,7 @@
 namespace motorcade {
 namespace {
 
-/// A slot of `slots` that is free, or a new one at the end.
+/// Returns a free slot of `slots`, or a new one at the end.
 template <class IdType, class Slot>
 IdType takeSlot(std::vector<IdType>& free, std::vector<Slot>& slots) {
   if (free.empty()) {

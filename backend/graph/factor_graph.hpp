@@ -11,8 +11,8 @@
 
 namespace motorcade {
 
-/// The variables and factors of a least-squares problem: which there are, and which touch each other. Gives out their
-/// ids, and adds and removes them together with the variables' states and the factors' linear models.
+/// Variables and factors of a least-squares problem, and which of them touch each other. Assigns their ids, and adds
+/// and removes them together with the variables' states and the factors' linear models.
 class FactorGraph {
  public:
   FactorGraph() = default;
@@ -20,9 +20,9 @@ class FactorGraph {
   FactorGraph& operator=(const FactorGraph&) = delete;
 
   VariableId addVariable(const Value& initial);
-  /// The variable must have no factors any more.
+  /// Removes a variable that has no factors any more.
   void removeVariable(VariableId id);
-  /// Empty, and nothing is added, when the factor is not finite at its variables' present values.
+  /// Adds a factor. Returns nothing, and adds nothing, when it is not finite at its variables' present values.
   std::optional<FactorId> addFactor(AnyFactor factor);
   void removeFactor(FactorId id);
 
@@ -41,7 +41,7 @@ class FactorGraph {
   std::size_t factorCount() const { return variables_of_.size() - free_factors_.size(); }
   bool contains(FactorId id) const;
   bool contains(VariableId id) const;
-  /// In ascending order of ids.
+  /// All variables, and all factors, in ascending order of ids.
   std::vector<VariableId> variables() const;
   std::vector<FactorId> factors() const;
 
@@ -52,7 +52,7 @@ class FactorGraph {
   };
 
   std::vector<Node> nodes_;
-  /// Per factor, empty where none is; close to each other, as searches pass many factors.
+  /// Variables per factor, empty where none is. They lie close to each other, as searches pass many factors.
   std::vector<std::span<const VariableId>> variables_of_;
   std::vector<VariableId> free_variables_;
   std::vector<FactorId> free_factors_;

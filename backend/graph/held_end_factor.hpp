@@ -7,8 +7,7 @@
 
 namespace motorcade {
 
-/// A factor on two variables of one kind, of which one is a constant: what is left is a factor on
-/// the other one.
+/// A factor on two variables of one kind, of which one is held constant: a factor on the other one remains.
 class HeldEndFactor final : public JacobianFactor {
  public:
   enum class Held { kFirst, kSecond };

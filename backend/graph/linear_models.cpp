@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// The least noise of the residuals: tolerances that are relative to it do not vanish without noise.
+/// Least noise of the residuals, without which tolerances relative to it would vanish.
 constexpr double kLeastMeanSquare = 1e-8;
 
 /// Columns M <- M R^T.
@@ -20,8 +20,8 @@ void turnColumns(LinearModels::Term& term, Eigen::Index column, const Eigen::Mat
     term.row(i).segment<N>(column) = (term.row(i).segment<N>(column) * R.transpose()).eval();
 }
 
-/// Turns columns that act on right perturbations to such that act on steps in the world's axes: to first order
-/// rho = R^T dp, phi = R^T dphi.
+/// Turns columns that act on right perturbations into columns for steps in the world's axes:
+/// to first order rho = R^T dp, phi = R^T dphi.
 void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> variables, LinearModels::Term& term) {
   Eigen::Index at = 0;
   for (const VariableId v : variables) {
@@ -35,7 +35,7 @@ void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> v
 
 using Column = Eigen::Map<Eigen::VectorXd>;
 
-/// No entry is infinite or undefined, nor too large to square, as the elimination does.
+/// True when all entries are finite and small enough to square, as the elimination does.
 bool canBeSquared(std::span<const double> numbers) {
   double sum = 0;
   for (const double number : numbers) sum += number * number;
@@ -92,7 +92,7 @@ std::span<const Value* const> LinearModels::valuesOf(const Factor& factor, Value
   return values_;
 }
 
-/// The stacked coordinates of the factor's variables where the estimates stand, in `coordinates_`.
+/// Stacks the coordinates of the factor's variables at the applied estimates, in `coordinates_`.
 Column LinearModels::appliedCoordinates(const Factor& factor) {
   coordinates_.clear();
   for (const VariableId v : factor.variables()) {
@@ -121,7 +121,8 @@ bool LinearModels::linearize(FactorId id) {
   return true;
 }
 
-/// The model and the cost at the applied estimates. False, and nothing changes, when they are not finite.
+/// Computes the model and the cost at the applied estimates. Returns false, and changes nothing, when they are not
+/// finite.
 bool LinearModels::linearizeResidual(Slot& slot) {
   const JacobianFactor& factor = *slot.jacobian;
   matrix_.resize(std::size_t(factor.rows()) * slot.columns);
@@ -138,7 +139,7 @@ bool LinearModels::linearizeResidual(Slot& slot) {
   return true;
 }
 
-/// Where a factor still says what it was made of, its H serves as it is, whatever became of g and c.
+/// Linearizes an InformationFactor. Where its held model is still valid, the model's H is used in place, not copied.
 bool LinearModels::linearizeInformation(FactorId id) {
   Slot& slot = slots_[id.value];
   const InformationFactor& factor = *slot.quadratic;
@@ -190,7 +191,7 @@ LinearModels::Mismatch LinearModels::mismatch(FactorId id) {
   return {.norm = r.norm(), .r = residual_};
 }
 
-/// Of the gradient, and by its entries over the square root of their information.
+/// Mismatch of the gradient; its norm divides each entry by the square root of its information.
 LinearModels::Mismatch LinearModels::informationMismatch(FactorId id) {
   const InformationFactor& factor = *slot(id).quadratic;
   const Information model = information(id);

@@ -13,9 +13,9 @@ namespace motorcade {
 
 /// The factors of a FactorGraph with a linear model of each, |J x + r|^2 in the coordinates x of its variables.
 ///
-/// All factors of a variable take their Jacobians at the same linearization point. Otherwise the motions that no
-/// relative measurement sees (of the whole, as a rigid body) would be seen a little, differently by each factor, and
-/// the ends of long trajectories would sway.
+/// All factors of a variable take their Jacobians at the same linearization point. Otherwise they would disagree a
+/// little on motions that no relative measurement sees (of the whole, as a rigid body), and seem to measure them. The
+/// ends of long trajectories would then sway.
 class LinearModels {
  public:
   /// [J | r] in the coordinates, column-major.
@@ -35,7 +35,7 @@ class LinearModels {
 
   explicit LinearModels(VariableStates& states) : states_(states) {}
 
-  /// False, and nothing is added, when the factor is not finite at its variables' present values.
+  /// Adds a factor. Returns false, and adds nothing, when it is not finite at its variables' present values.
   bool add(FactorId id, AnyFactor factor);
   void remove(FactorId id);
 
@@ -45,28 +45,28 @@ class LinearModels {
   /// The factor as one of its kind; null when it is of the other.
   const JacobianFactor* jacobianFactor(FactorId id) const { return slot(id).jacobian.get(); }
   const InformationFactor* informationFactor(FactorId id) const { return slot(id).quadratic.get(); }
-  /// The linear model of a JacobianFactor, and of an InformationFactor.
+  /// Linear models of a JacobianFactor and of an InformationFactor.
   Term term(FactorId id) const;
   Information information(FactorId id) const;
 
-  /// A new linear model: the Jacobian at the linearization points, the residual at the estimates. False, and the former
-  /// one is kept, if the new one is not finite.
+  /// Makes a new linear model: the Jacobian at the linearization points, the residual at the estimates. Returns false,
+  /// and keeps the former one, if the new one is not finite.
   bool linearize(FactorId id);
-  /// The vector lasts until the next call.
+  /// Mismatch of a factor's model at the estimates; its vector lasts until the next call.
   Mismatch mismatch(FactorId id);
   /// Shifts the model's residual (of an InformationFactor its gradient) by its mismatch; the Jacobian stays.
   void correctResidual(FactorId id, const Mismatch& mismatch);
   /// Sum of the corrected mismatches since the Jacobian was taken.
   double drift(FactorId id) const { return slot(id).drift; }
 
-  /// About to be replaced: nobody asks how far its linear model is off.
+  /// True for a factor that is about to be replaced, so that the error of its linear model does not matter.
   bool isProvisional(FactorId id) const { return slot(id).provisional; }
   void markProvisional(FactorId id) { slots_[id.value].provisional = true; }
 
   /// Sum of the factors' squared residuals, each at the estimates when it was last looked at.
   double totalCost() const { return total_cost_; }
-  /// Root mean square of the residuals' norms, in standard deviations, over the factors with residuals: the cost of a
-  /// marginal prior counts everything that ever retired into it. It is the scale of all tolerances.
+  /// Root mean square of the residuals' norms, in standard deviations: the scale of all tolerances. Only factors with
+  /// residuals count, as the cost of a marginal prior contains everything that ever retired into it.
   double rmsResidual() const;
   std::size_t heldBytes() const { return terms_.heldBytes(); }
 

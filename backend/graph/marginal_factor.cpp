@@ -16,7 +16,7 @@ Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& matrix) {
   return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
-/// Of the turn of a displacement to a pose, under a step of that pose.
+/// Jacobian of the turn of a displacement to a pose, under a step of that pose.
 Eigen::Matrix3d turnJacobian(const Eigen::Vector3d& turn_rad) {
   // log(exp(d) * exp(phi)) ~ phi + Jl^-1(phi) d, Jl^-1(phi) = Jr^-1(-phi).
   Vector6d minus = Vector6d::Zero();

@@ -6,7 +6,7 @@
 
 namespace motorcade {
 
-/// What retired variables said about those that stay: a quadratic around the values at that moment. When a variable's
+/// Information of retired variables on those that stay: a quadratic around the values at that moment. When a variable's
 /// linearization point moves later, the quadratic stays the same function of e = displacement(value then, value now).
 class MarginalFactor final : public InformationFactor {
  public:
@@ -15,7 +15,7 @@ class MarginalFactor final : public InformationFactor {
 
   void linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const override;
 
-  /// The variables that go are marginalized.
+  /// Marginalizes the variables that go.
   std::unique_ptr<InformationFactor> without(std::span<const VariableId> gone) const override;
 
  private:

@@ -15,7 +15,7 @@ class MarkSet {
     ++round_;
   }
   bool contains(std::size_t number) const { return round_of_[number] == round_; }
-  /// False when the number is in the set already.
+  /// Adds a number; false when it is in the set already.
   bool insert(std::size_t number) {
     if (contains(number)) return false;
     round_of_[number] = round_;

@@ -14,11 +14,11 @@ struct PackedTriangle {
 
   static std::size_t length(int size) { return std::size_t(size) * (std::size_t(size) + 1) / 2; }
   static std::ptrdiff_t offset(int size, int column) { return std::ptrdiff_t{column} * (2 * size - column - 1) / 2; }
-  /// Such that [row] is the entry, from the diagonal on.
+  /// Column j, from the diagonal on, indexed by row.
   const double* column(int j) const { return data + offset(size, j); }
 };
 
-/// x' H x + 2 g' x + c.
+/// Quadratic function x' H x + 2 g' x + c.
 struct Quadratic {
   std::vector<double> lower_H;  // packed
   Eigen::VectorXd g_c;          // [g; c]
@@ -26,7 +26,7 @@ struct Quadratic {
   PackedTriangle matrix() const { return {lower_H.data(), static_cast<int>(g_c.size()) - 1}; }
 };
 
-/// Of the symmetric [H g; g' c], from its lower triangle.
+/// Packs the symmetric [H g; g' c], from its lower triangle.
 void pack(const Eigen::Ref<const Eigen::MatrixXd>& system, Quadratic& quadratic);
 
 }  // namespace motorcade

@@ -12,8 +12,8 @@
 namespace motorcade {
 namespace {
 
-/// S, upper triangular, with S^T S = information that leaves directions open, in which a Cholesky decomposition breaks
-/// down: where a pivot is rounding alone, the row of S is zero.
+/// Upper triangular S with S^T S = information, which may leave directions open: a Cholesky decomposition breaks down
+/// in them. Where a pivot is rounding alone, the row of S is zero.
 template <int N>
 Eigen::Matrix<double, N, N> semidefiniteUpperRoot(const Eigen::Matrix<double, N, N>& information) {
   constexpr double kRounding = 1e-12;  // of a diagonal entry
@@ -27,7 +27,7 @@ Eigen::Matrix<double, N, N> semidefiniteUpperRoot(const Eigen::Matrix<double, N,
   return root;
 }
 
-/// S, upper triangular, with S^T S = information.
+/// Upper triangular S with S^T S = information.
 template <int N>
 Eigen::Matrix<double, N, N> upperRoot(const Eigen::Matrix<double, N, N>& information) {
   constexpr double kLost = 1e-13;  // of a diagonal entry: what is left of it is rounding
@@ -39,14 +39,14 @@ Eigen::Matrix<double, N, N> upperRoot(const Eigen::Matrix<double, N, N>& informa
   return root;
 }
 
-/// In [-pi, pi]; inlined, unlike std::remainder.
+/// Angle in [-pi, pi]; inlined, unlike std::remainder.
 double wrapped(double angle_rad) {
   constexpr double kTurn_rad = 2 * std::numbers::pi;
   return angle_rad - kTurn_rad * std::nearbyint(angle_rad / kTurn_rad);
 }
 
-/// Log(R) with what its inverse right Jacobian needs: Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t /
-/// 2)) / t^2.
+/// Log(R) and the factor k of its inverse right Jacobian:
+/// Jr^-1 = I + [phi]_x / 2 + k [phi]_x^2, k = (1 - (t / 2) cot(t / 2)) / t^2.
 struct RotationLog {
   Eigen::Vector3d phi_rad;
   double k;
@@ -87,7 +87,7 @@ RelativePoseFactorSE3::RelativePoseFactorSE3(VariableId i, VariableId j, const S
   C_ = S.bottomRightCorner<3, 3>();
 }
 
-/// With T = Xi^-1 Xj, A t(E) = A Rz^T (t_T - t_z); and with Jr^-1 taken at Log R(E)
+/// The translation part is A t(E) = A Rz^T (t_T - t_z), with T = Xi^-1 Xj. With Jr^-1 at Log R(E):
 ///   de/dxi_j = [R_E 0; 0 Jr^-1],  de/dxi_i = -de/dxi_j Ad(T^-1) = [-Rz^T  Rz^T [t_T]_x; 0  -Jr^-1 R_T^T]
 void RelativePoseFactorSE3::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
   const SE3 &Xi = std::get<SE3>(*values[0]), &Xj = std::get<SE3>(*values[1]);
@@ -131,7 +131,7 @@ RelativePoseFactorSE2::RelativePoseFactorSE2(VariableId i, VariableId j, const S
   c_ = S(2, 2);
 }
 
-/// As in space, with Jr^-1 = 1 and d(R^T t)/dangle in place of the cross product.
+/// The same as in space, with Jr^-1 = 1 and d(R^T t)/dangle in place of the cross product.
 void RelativePoseFactorSE2::linearize(std::span<const Value* const> values, Eigen::Ref<Eigen::MatrixXd> term) const {
   const SE2 &Xi = std::get<SE2>(*values[0]), &Xj = std::get<SE2>(*values[1]);
   const Eigen::Vector2d t_m = Xi.rotation().transpose() * (Xj.translation() - Xi.translation());

@@ -14,10 +14,10 @@ namespace motorcade {
 using VariableId = Id<struct VariableTag>;
 using FactorId = Id<struct FactorTag>;
 
-/// At most six numbers, without a heap allocation.
+/// A vector of at most six numbers, without a heap allocation.
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
-/// What a variable holds: a pose in space (six dimensions), a pose in the plane (three), or a plain vector.
+/// Value of a variable: a pose in space (six dimensions), a pose in the plane (three), or a plain vector.
 using Value = std::variant<SE3, SE2, SmallVector>;
 
 inline int dimension(const Value& value) {
@@ -25,8 +25,8 @@ inline int dimension(const Value& value) {
   return std::holds_alternative<SE3>(value) ? 6 : 3;
 }
 
-/// A step in the world's axes: a pose's origin moves by the first numbers [m], and it turns about its origin by the
-/// last [rad]. A vector moves by addition.
+/// Moves a value by a step in the world's axes: a pose's origin moves by the first numbers [m], and it turns about its
+/// origin by the last [rad]. A vector moves by addition.
 Value displaced(const Value& value, const SmallVector& step);
 
 /// The step with displaced(from, step) = to.

@@ -8,10 +8,10 @@ namespace {
 
 using Coordinates = VariableState::Coordinates;
 
-/// A vector's step is taken to put its factors off like that of a pose which turns so far.
+/// Turn of a pose that puts its factors off as far as a vector's step is taken to put its own.
 constexpr double kVectorTurn_rad = 0.25;
 
-/// Since the estimate was applied.
+/// Step since the estimate was applied.
 SmallVector step(const VariableState& state) {
   SmallVector d(state.size);
   for (int i = 0; i < state.size; ++i) d[i] = state.x[i] - state.x_applied[i];

@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// The state of a variable: its coordinates x in all linear models, and the values that they were stated around.
+/// State of a variable: its coordinates x in all linear models, and the values around which these are stated.
 struct VariableState {
   static constexpr int kMaxDimension = 6;
   using Coordinates = std::array<double, kMaxDimension>;
@@ -25,11 +25,11 @@ struct VariableState {
   Value linearization_point;   // where the Jacobians of all its factors are taken
 };
 
-/// The estimates of the variables of a FactorGraph, and the coordinates that move them.
+/// Estimates of the variables of a FactorGraph, and the coordinates that move them.
 ///
 /// Where the solver moves x, the estimate follows by the same step in the world's axes: x adds up the steps of a
-/// variable since it was added. No origin has to move when something is relinearized, so that it touches only the
-/// factors concerned, and a model whose residual alone is off can be corrected by a new right-hand side.
+/// variable since it was added. So no origin has to move when something is relinearized, which touches only the factors
+/// concerned. A model of which only the residual is off can be corrected by a new right-hand side.
 class VariableStates {
  public:
   const VariableState& operator[](VariableId id) const { return states_[id.value]; }
@@ -43,16 +43,17 @@ class VariableStates {
   /// Lets the estimate follow x.
   void apply(VariableId id);
   void apply(std::span<const VariableId> ids);
-  /// Applies x, and begins it at zero again: all models of the variable must be linearized anew.
+  /// Applies x, and restarts it at zero: all models of the variable must be linearized anew.
   void restartCoordinates(VariableId id);
-  /// The Jacobians of the variable's factors are to be taken where its estimate stands: linearize them after that.
+  /// Moves the point at which the Jacobians of the variable's factors are taken to its estimate; linearize them after
+  /// that.
   void moveLinearizationPoint(VariableId id);
-  /// How far the estimate has turned since [rad].
+  /// Turn of the estimate since then [rad].
   double turnSinceLinearization(VariableId id) const;
 
-  /// A bound, in standard deviations, of how far the linear models of the variable's factors went off by its steps
-  /// since they were last compared: mismatch comes from turning and grows with turn times step. For vectors, whose
-  /// factors are bilinear at most, a guess: a fixed share of the step.
+  /// Bound, in standard deviations, of the errors that a variable's steps since the last comparison made in its
+  /// factors' linear models. Such errors come from turning, and grow with turn times step. Factors of vectors are
+  /// bilinear at most: for them a fixed share of the step is a guess.
   double mismatchBound(VariableId id) const;
   void markCompared(VariableId id) { (*this)[id].x_compared = (*this)[id].x; }
 

@@ -11,7 +11,7 @@ namespace motorcade {
 namespace {
 
 constexpr int kColumns = 8, kRows = 4;  // of the grid over the image in which landmarks are spread
-/// Between the newest frames that a cut leaves; twice as many where they are more than four times as old, and so on.
+/// Spacing of the newest frames that a cut leaves; it doubles where they are more than four times as old, and so on.
 constexpr int kKeptSpacing_frames = 4;
 
 }  // namespace
@@ -90,11 +90,11 @@ int BodyPoints::cellOf(const Candidate& candidate) const {
   return std::clamp(row, 0, kRows - 1) * kColumns + std::clamp(column, 0, kColumns - 1);
 }
 
-/// Fills up the landmarks: the longest tracks first, cell by cell of the image in turn.
+/// Fills up the landmarks: the longest tracks first, in turn from the cells of the image.
 void BodyPoints::choose() {
   struct Waiting {
     Candidate* candidate;
-    int cell, turn = 0;  // of its cell, which takes one in each turn from the number of those it holds on
+    int cell, turn = 0;  // turn of the cell, which takes one in each, from the number of those it holds on
   };
   std::vector<Waiting> waiting;
   std::array<int, kColumns * kRows> held{};

@@ -27,24 +27,25 @@ struct LandmarkTrack {
 /// nothing, do not count.
 class TrackLife {
  public:
-  /// In frame order.
+  /// Adds a frame, in order.
   void add(FrameId frame);
   bool isLost(const LandmarkTrack::View& newest) const { return newest.frame < oldest_; }
 
  private:
   static constexpr std::size_t kMaxGap_frames = 3;
   std::deque<FrameId> frames_;  // the newest ones
-  FrameId oldest_{0};           // that a track which goes on may have been seen in last
+  FrameId oldest_{0};           // in which a track that goes on may have been seen last
 };
 
-/// Chooses the landmarks of a body and cuts their tracks. A track ends when its point is lost. When it has as many
-/// views as it may have, most of them leave it as a track that ended; some may stay, so that the landmark remains the
-/// one that it was. Nothing is counted twice.
+/// Chooses the landmarks of a body and cuts their tracks. A track ends when its point is lost. A track with as many
+/// views as it may have gives most of them away as a track that ended; a few may stay, so that the landmark stays the
+/// same. Each observation counts once.
 class BodyPoints {
  public:
   struct Params {
     int max_views = 10;  // of a track
-    /// A cut leaves a track views in few frames, the same for all tracks: the farther back, the fewer, up to so old.
+    /// Age of the oldest views that a cut leaves. They lie in few frames, the same for all tracks, and fewer farther
+    /// back.
     int oldest_kept_frames = 0;
     int max_landmarks = 300;  // followed at a time
     int half = 0;             // 1 and 2 take the points with odd and even ids only
@@ -55,12 +56,12 @@ class BodyPoints {
   /// Views that a point had before it was known to be the body's, oldest first.
   using EarlierViews = std::function<std::vector<LandmarkTrack::View>(PointId)>;
 
-  /// The body's points in one frame, in frame order, ordered by point.
+  /// Adds the body's points in one frame, in frame order, ordered by point.
   void observe(FrameId frame, std::span<const PointMeasurement> points, const EarlierViews& earlier = {});
-  /// The points belong to another body: their tracks that have not ended are forgotten.
+  /// Forgets tracks that have not ended, of points that belong to another body.
   void forget(std::span<const PointMeasurement> points);
 
-  /// Tracks that ended since the last call, with two views and more.
+  /// Takes the tracks that ended since the last call, with two views and more.
   std::vector<LandmarkTrack> takeEnded();
   /// The chosen landmarks whose tracks go on, with two views and more.
   std::vector<LandmarkTrack*> current();

@@ -16,14 +16,15 @@ bool isTaken(PointId point) { return point.value % kOneOfPoints == 0; }
 using Shifts = Eigen::Matrix<double, Eigen::Dynamic, kCalibrationErrors>;
 using Matrix64d = Eigen::Matrix<double, 6, 4>;
 
-/// H and G of H delta = -G: poses step by delta when the observations shift. Landmarks are eliminated.
+/// Sums of the normal equations H delta = -G: poses step by delta when the observations shift. Landmarks are
+/// eliminated.
 class ResponseSum {
  public:
   explicit ResponseSum(std::size_t frames)
       : H_(Eigen::MatrixXd::Identity(6 * frames, 6 * frames) * kLoosely),
         G_(Shifts::Zero(6 * frames, kCalibrationErrors)) {}
 
-  /// `shifts` of each view's observation.
+  /// Adds a landmark, with the `shifts` of each view's observation.
   void add(std::span<const LandmarkView> views, const LandmarkFit& fit, std::span<const ObservationShifts> shifts) {
     W_.clear();
     Eigen::Matrix<double, 4, kCalibrationErrors> of_landmark = Eigen::Matrix<double, 4, kCalibrationErrors>::Zero();
@@ -46,7 +47,7 @@ class ResponseSum {
     }
   }
 
-  /// The first frame stays where it is.
+  /// Solves for the steps; the first frame stays where it is.
   Shifts solved() const {
     Shifts steps = Shifts::Zero(G_.rows(), kCalibrationErrors);
     const Eigen::Index rest = G_.rows() - 6;
@@ -60,7 +61,7 @@ class ResponseSum {
   std::vector<Matrix64d> W_;
 };
 
-/// Whitened and weighted as the views are.
+/// Shifts of the views' observations, whitened and weighted as the views are.
 std::vector<ObservationShifts> weightedShifts(const StereoCamera& camera, const CalibrationSigmas& sigmas,
                                               std::span<const LandmarkView> views, const LandmarkFit& fit) {
   std::vector<ObservationShifts> shifts;

@@ -9,16 +9,16 @@
 
 namespace motorcade {
 
-/// Shifts of the camera's path that follow from those of observations of landmarks at rest. They solve the normal
-/// equations of a bundle adjustment over the newest frames, with a right-hand side for each error of the calibration.
-/// A sample of the landmarks is enough.
+/// Shifts of the camera's path that follow from shifts of observations of landmarks at rest. They solve the normal
+/// equations of a bundle adjustment over the newest frames, with a right-hand side for each calibration error. A sample
+/// of the landmarks is enough.
 class CalibrationResponse {
  public:
   /// `points` chooses landmarks from those at rest.
   CalibrationResponse(const StereoCamera& camera, const CalibrationSigmas& sigmas, const LandmarkNoise& noise,
                       const BodyPoints::Params& points);
 
-  /// The points at rest of a frame, in frame order.
+  /// Adds the points at rest of a frame, in frame order.
   void observe(FrameId frame, std::span<const PointMeasurement> at_rest);
 
   struct FrameStep {
@@ -28,7 +28,7 @@ class CalibrationResponse {
   /// Shifts of the motions between the newest frames that showed points, oldest first.
   std::vector<FrameStep> steps(const PoseVariable& camera, const std::function<SE3(VariableId)>& pose,
                                const NoiseLevel& level, double offset_px);
-  /// The shifts of the newest step when `steps` was called last; none before.
+  /// Shifts of the newest step at the last call of `steps`; none before it.
   const ConsideredCalibration::PoseShifts& ofNewestStep() const { return newest_; }
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kFewStatic = 20;  // landmarks seen now and before: with fewer the front-end's odometry helps
 
-/// Longer before anything was seen than this, the camera may as well have stood.
+/// Longest time before the first points over which a motion is predicted back: for longer, the camera may have stood.
 constexpr double kMaxPrediction_s = 1.0;
 
 }  // namespace
@@ -34,9 +34,9 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
   return camera;
 }
 
-/// Where points hardly tell it, odometry says how the camera moved since points were seen last, and the vehicle's own
-/// sensors, where there are some, since the frame before; else unseen frames lie where a steady motion puts them. An
-/// unknown motion begins a new part: after a weak factor all that follows would float.
+/// Links a camera pose that points hardly tell: by odometry since points were last seen, and by the vehicle's own
+/// sensors since the previous frame, if there are any. Without sensors, unseen frames lie where a steady motion puts
+/// them. An unknown motion begins a new part: behind a weak factor the rest of the path would float.
 void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto& [frame_before, before] = *frames_.rbegin();
   camera.part = before.part;
@@ -66,7 +66,7 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   if (m.head.status == FrameStatus::kGood) moveStart(m.head.stamp, seen->second.head.stamp);
 }
 
-/// The world is what was seen first: the gauge moves there.
+/// Links a frame before any points were seen. The world is the first frame with points, so the gauge moves there.
 void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& camera) {
   const CameraRecord& before = frames_.rbegin()->second;
   if (const auto& told = m.odometry.vehicle) {
@@ -81,7 +81,7 @@ void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& cam
   addGaugePrior(camera.x, solver_.pose(camera.x));
 }
 
-/// The first motion that is measured, up to `now`, went on like that before anything was seen.
+/// Extends the first measured motion, up to `now`, back over the frames before anything was seen.
 void CameraChain::moveStart(Timestamp now, Timestamp seen_first) {
   for (const UnseenStart::Link& link : start_.links) {
     if (secondsBetween(link.from, seen_first) > kMaxPrediction_s) continue;

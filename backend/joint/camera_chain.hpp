@@ -9,21 +9,21 @@
 
 namespace motorcade {
 
-/// Were points seen, whether or not they tell how the camera moved?
+/// True when points were seen, whether or not they tell how the camera moved.
 bool showsPoints(const FrameMeasurements& measurements);
 
-/// The camera's poses as variables, and what links them where landmarks hardly do: the front-end's odometry, the
-/// vehicle's own motion, a steady one over frames in which nothing was seen, and a new part where nobody knows how the
-/// camera moved.
+/// Camera poses as variables, and what links them where landmarks hardly do: the front-end's odometry, the vehicle's
+/// own motion, or a steady motion over frames without points. Where nobody knows how the camera moved, a new part
+/// begins.
 class CameraChain {
  public:
   /// `frames` are those of the window, before the newest one.
   CameraChain(const JointParams& params, IncrementalSolver& solver, const std::map<FrameId, CameraRecord>& frames)
       : params_(params), solver_(solver), frames_(frames) {}
 
-  /// The newest frame's camera, in which so many landmarks at rest are seen again.
+  /// Adds the newest frame's camera, which sees so many landmarks at rest again.
   CameraRecord add(const FrameMeasurements& measurements, int seen_again);
-  /// A frame leaves the window: what came before anything was seen stays as it is.
+  /// Fixes the motion before anything was seen, as a frame leaves the window.
   void forgetStart() { start_ = {}; }
 
  private:
@@ -43,7 +43,7 @@ class CameraChain {
     SE3 T_seen_now;
   };
   LastSeen last_seen_;
-  /// Frames before the first in which points were seen: nothing tells how the camera moved in them.
+  /// Frames before the first with points: nothing tells how the camera moved in them.
   struct UnseenStart {
     struct Link {
       std::optional<FactorId> factor;

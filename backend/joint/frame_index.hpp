@@ -9,14 +9,14 @@
 
 namespace motorcade {
 
-/// The variable that the body's pose in a frame is; invalid where the graph does not hold it.
+/// Returns the variable of the body's pose in a frame; invalid where the graph does not hold it.
 using PoseVariable = std::function<VariableId(FrameId)>;
 
-/// The frames in which landmarks were seen, which are few and near each other, as far as the graph holds their poses:
-/// the frames and variables of a factor.
+/// Frames in which landmarks were seen and whose poses the graph holds: the frames and variables of a factor. They are
+/// few and near each other.
 class FrameIndex {
  public:
-  /// There is at least one track.
+  /// Indexes the frames of the tracks, of which there is at least one.
   FrameIndex(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable);
 
   const std::vector<FrameId>& frames() const { return frames_; }

@@ -1,4 +1,4 @@
-/// The part of JointGraph that tells where objects are and how they move, and how surely.
+/// Estimates of objects by JointGraph: where they are, how they move, and how surely.
 
 #include <array>
 #include <cmath>
@@ -12,14 +12,14 @@
 namespace motorcade {
 namespace {
 
-/// The graph takes acceleration as white noise, which makes three quarters of a twist's variance at least and the
-/// measurements the rest: smoothed along positions of any noise, a velocity's error has the spectrum
-/// u^6 / (1 + u^4)^2 of the acceleration and u^2 / (1 + u^4)^2 of the positions, whose integrals are as 3 to 1, and
-/// the newest one of a filter has the same parts. A mean acceleration has the walk's variance in place of the former.
+/// Share of the measurements in a twist's variance, where a mean acceleration has the walk's variance in place of the
+/// rest. The graph takes acceleration as white noise. Smoothed along positions of any noise, a velocity's error has the
+/// spectrum u^6 / (1 + u^4)^2 of the acceleration and u^2 / (1 + u^4)^2 of the positions. Their integrals are as 3 to
+/// 1, and the newest velocity of a filter has the same parts.
 constexpr double kMeasuredShare = 0.25;
 
-/// The Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation,
-/// of pose, twist, yaw and pitch.
+/// Jacobian of the pose with the axes of travel, exp(xi) R_z(yaw + dyaw) R_y(pitch + dpitch), right perturbation, with
+/// respect to pose, twist, yaw and pitch.
 Eigen::Matrix<double, 6, 14> byTravel(const Eigen::Matrix3d& R_body_travel) {
   Eigen::Matrix<double, 6, 14> J = Eigen::Matrix<double, 6, 14>::Zero();
   J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = R_body_travel.transpose();
@@ -66,7 +66,7 @@ struct JointGraph::TwistChanges {
   std::array<VariableId, 4> variables() const {
     return {of_speed.from->twist, of_speed.to->twist, of_yaw_rate.from->twist, of_yaw_rate.to->twist};
   }
-  /// The derivatives of the two changes by the four twists.
+  /// Jacobian of the two changes with respect to the four twists.
   Eigen::Matrix<double, 2, 24> jacobian() const {
     Eigen::Matrix<double, 2, 24> J = Eigen::Matrix<double, 2, 24>::Zero();
     J.block<1, 3>(0, 0) = -along.transpose() / of_speed.length_s();
@@ -75,9 +75,9 @@ struct JointGraph::TwistChanges {
     J.block<1, 3>(1, 21) = about.transpose() / of_yaw_rate.length_s();
     return J;
   }
-  /// `covariance` is the graph's, of the two changes, `density` that of its white noise on acceleration. Of a span that
-  /// ends with what is known of the object, the noise draws the mean change towards its own mean, zero, by the part
-  /// that is left of the variance it had before anything was measured, density / length.
+  /// Acceleration from `covariance`, the graph's of the two changes, and `density`, that of its white noise on
+  /// acceleration. At the end of an object's frames the noise prior draws the mean change towards zero, by the share
+  /// that is left of the variance before any measurement, density / length.
   ObjectAcceleration acceleration(const Eigen::Matrix2d& covariance, const Vector6d& density) const {
     const auto sigma = [&](int k, const AccelerationSpan& span, const RateChange& change) {
       const double variance = std::max(0.0, covariance(k, k));
@@ -110,7 +110,7 @@ std::optional<JointGraph::TwistChanges> JointGraph::twistChanges(const ObjectTra
   return changes;
 }
 
-/// The covariance of the changes, where there are some, and of pose, twist, yaw and pitch of the axes of travel.
+/// Covariance of the changes, where there are some, and of pose, twist, yaw and pitch of the axes of travel.
 std::optional<Eigen::MatrixXd> JointGraph::motionCovariance(const ObjectTrack& track, const ObjectRecord& record,
                                                             const std::optional<TwistChanges>& changes) const {
   std::vector<VariableId> variables{record.pose, record.twist, track.shared};

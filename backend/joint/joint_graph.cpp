@@ -41,7 +41,7 @@ LandmarkBundles::Params objectBundles(const JointParams& params, const StereoCam
           .tells_shake = false};
 }
 
-/// The first frames have little to compare with: the response is computed in frames 1, 2, 4 and 8, then in one of some.
+/// True in frames 1, 2, 4 and 8, then in one of some: the first frames have little to compare with.
 bool respondsIn(std::int64_t frame) {
   if (frame <= kEarlyFrames) return std::has_single_bit(static_cast<std::uint64_t>(frame));
   return frame % kResponse_frames == kEarlyFrames;
@@ -72,8 +72,9 @@ JointGraph::JointGraph(const JointParams& params, const WindowParams& window, co
   calibration_ = ConsideredCalibration(camera_, window.calibration);
 }
 
-/// The camera first: objects are predicted, and their motion is told from the camera's, by where it was then found.
-/// Models are corrected with the objects: theirs of the frame before are replaced in between.
+/// Adds the camera before the objects. Objects are predicted from its pose, and their motion is told from the pose at
+/// which it was then found. With objects, models are corrected in the second update, as the factors of the objects'
+/// previous frame are replaced before it.
 void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   std::erase_if(landmarks_, [this](const auto& body) { return !tracks_.contains(body.first); });
@@ -88,7 +89,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   ++frame_count_;
 }
 
-/// A point that rests from its second view on did so in the first; one that became so later did not.
+/// Adds the camera. A point that rests from its second view on did so in the first; one that rests only later did not.
 void JointGraph::addCamera(const FrameMeasurements& m) {
   BodyPoints& at_rest = at_rest_.bundles().points();
   if (showsPoints(m))
@@ -137,7 +138,8 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
                              [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
 }
 
-/// The response changes little from one frame to the next: where it is computed, it is so for all of the newest frames.
+/// Considers the calibration's errors. The response changes little from frame to frame, so where it is computed, it
+/// holds for all of the newest frames.
 void JointGraph::consider(const FrameMeasurements& measurements) {
   const auto set = [this](FrameId before, FrameId now, const ConsideredCalibration::PoseShifts& shifts) {
     calibration_.set(now, {.seconds = secondsBetween(frames_.at(before).head.stamp, frames_.at(now).head.stamp),
@@ -166,7 +168,7 @@ void JointGraph::calibrate(FrameId newest) {
   for (auto& [id, landmarks] : landmarks_) landmarks.fix();
 }
 
-/// An offset that the calibration's deviation makes so unlikely is a fault of the rig or of the calibration.
+/// Reports an offset that the calibration's deviation makes unlikely: it is a fault of the rig or of the calibration.
 void JointGraph::tellOfOffset() {
   constexpr double kUnlikely_sigmas = 3;
   const double offset_px = offset_.px(), sigma_px = calibration_.sigmas().disparity_px;
@@ -178,7 +180,7 @@ void JointGraph::tellOfOffset() {
   problems_.push_back(text.str());
 }
 
-/// Landmarks were eliminated at another offset.
+/// Eliminates landmarks anew that were eliminated at another offset.
 void JointGraph::linearizeLandmarksAnew() {
   offset_.holdAsEliminated();
   at_rest_.relinearize(frames_);

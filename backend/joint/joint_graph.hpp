@@ -17,7 +17,7 @@
 
 namespace motorcade {
 
-/// Bundle adjustment in body frames, the world being body 0: the measurements of a frame become the camera's pose, the
+/// Bundle adjustment in body frames, the world being body 0. A frame's measurements become the camera's pose, the
 /// objects' poses seen from it, their twists, and factors over the landmarks of each body. The variable that an
 /// object's poses share is its axes of travel.
 class JointGraph final : public SmoothingWindow {
@@ -28,12 +28,12 @@ class JointGraph final : public SmoothingWindow {
   void converge() override;
   SolverCounters counters() const override;
 
-  /// The pose has the axes of travel.
+  /// Pose of an object, with the axes of travel.
   SE3 objectPose(const ObjectTrack& track, FrameId frame) const override;
-  /// The turn is about the upright axis of travel.
+  /// Motion of an object; its turn is about the upright axis of travel.
   ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const override;
   std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const override;
-  /// The points at rest tell it, see NoiseLevel.
+  /// Design effect of the points at rest, see NoiseLevel.
   double designEffect() const override { return at_rest_.designEffect(); }
 
  private:

@@ -14,8 +14,8 @@ namespace motorcade {
 struct JointParams {
   /// Views of a landmark, after which its track is cut.
   int track_frames = 10, object_track_frames = 14;
-  /// Vehicles are followed by few points, and each that is followed for long keeps the body's frame where it is: see
-  /// BodyPoints.
+  /// Age up to which a cut leaves views, see BodyPoints. Vehicles have few points, and each point that is followed for
+  /// long keeps the body's frame where it is.
   int object_kept_frames = 64;
   int max_static_landmarks = 400, max_object_landmarks = 30;  // followed at a time, of each object
   /// The landmarks at rest are eliminated in one of so many frames; the camera is aligned to them in the others.
@@ -23,11 +23,11 @@ struct JointParams {
   int frames_per_factor = 5;  // tracks that ended in so many frames share a factor
   int point_half = 0;         // 1 and 2 use the points with odd and even ids only, to compare both; 0 uses all
 
-  /// Texture is matched with about the same bias in each frame: all disparities of a landmark share an error. Points at
-  /// rest are seen at the slanted edges of all kinds of things, and through a calibration that is not exact. The bias
-  /// of a vehicle's points is measured as half to .8 of the noise of one disparity, whether that is .04 or .3 px.
-  /// Of landmarks at rest, variances may differ less: with 4 degrees of freedom the camera's path is hardly more exact,
-  /// but its covariances claim it.
+  /// Noise of landmarks' observations. Texture is matched with about the same bias in each frame, so all disparities of
+  /// a landmark share an error. Points at rest are seen at the slanted edges of all kinds of things, and through a
+  /// calibration that is not exact. The bias of a vehicle's points is measured as half to .8 of the noise of one
+  /// disparity, whether that is .04 or .3 px. Variances of landmarks at rest may differ less: with 4 degrees of freedom
+  /// the camera's path is hardly more exact, but its covariances claim it.
   LandmarkNoise static_noise{.variance_freedom = 8, .shared_disparity_sigma_px = 0.5};
   LandmarkNoise object_noise{.shared_disparity_sigma_px = 0, .shared_disparity_share = 0.7};
   double shake_sigma_px = 0.03;  // of the cameras against each other, before it is seen; 0: they never shake
@@ -36,9 +36,9 @@ struct JointParams {
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
   /// Gauge of an object: its frame at birth.
   double object_origin_sigma_m = 1e-3, object_axes_sigma_rad = 1e-4;
-  /// Of an object's first twist: a vehicle may be fast, but hardly turns.
+  /// Prior of an object's first twist: a vehicle may be fast, but hardly turns.
   double twist_sigma_mps = 20, yaw_rate_sigma_radps = 0.2, tilt_rate_sigma_radps = 0.05;
-  /// Of how it travels in that frame.
+  /// Prior of how the object travels in that frame.
   double lever_sigma_m = 2, travel_yaw_sigma_rad = 0.1, travel_pitch_sigma_rad = 0.03;
 
   AccelerationNoise acceleration{
@@ -47,7 +47,8 @@ struct JointParams {
 
   /// See IncrementalSolver::Params.
   double mismatch_tolerance = 0.05, jacobian_drift_sigmas = 0.5, substitution_tolerance = 0.05;
-  /// Each frame tells a little more of how an object's axes lie along its travel, and with them its whole path turns.
+  /// Scalars substituted beyond the changed cliques, see IncrementalSolver. Each frame tells a little more of an
+  /// object's axes along its travel, and with them its whole path turns.
   int spread_scalars = 50;
   int relinearized_scalars = 300;  // the budget where none is set: with more of it, nothing becomes more exact
   int iterations_per_update = 1;
@@ -57,7 +58,7 @@ struct JointParams {
 
 std::vector<Parameter> parametersOf(JointParams& params);
 
-/// How landmarks of a body are chosen in this camera's images.
+/// Parameters by which landmarks of a body are chosen in this camera's images.
 BodyPoints::Params pointParams(const JointParams& params, const StereoCamera& camera, int max_views, int max_landmarks);
 
 }  // namespace motorcade

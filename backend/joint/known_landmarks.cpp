@@ -47,7 +47,7 @@ struct AlignmentSum {
   }
 };
 
-/// The shake where the pose is as it is taken to be: robust weights should follow it.
+/// Shake with the pose as it is taken to be, for robust weights to follow it.
 double shakeOfPose(const std::vector<Alignment>& aligned, const LandmarkNoise& noise) {
   double information = 1 / (noise.shake_sigma_px * noise.shake_sigma_px), gradient = 0;
   for (const Alignment& a : aligned) {
@@ -58,7 +58,7 @@ double shakeOfPose(const std::vector<Alignment>& aligned, const LandmarkNoise& n
   return -gradient / information;
 }
 
-/// By a step of the earlier pose in the world.
+/// Aligns a view; its Jacobian is by a step of the earlier pose in the world.
 std::optional<Alignment> align(const StereoCamera& camera, const ViewOfKnown& view,
                                const std::array<SE3, 2>& T_cam_world, double offset_px) {
   const SE3 T_last_first = T_cam_world[1] * T_cam_world[0].inverse();
@@ -107,7 +107,7 @@ EliminatedLandmarks alignToKnown(const StereoCamera& camera, const LandmarkNoise
                              .shakes = {},
                              .estimates = {}};
   if (shaken) result.shakes = {FrameShake{}, shake};
-  // What a step of the later pose does, one of the earlier undoes.
+  // A step of the later pose is undone by one of the earlier pose.
   Eigen::Matrix<double, 6, 12> by_both;
   by_both << Matrix6d::Identity(), -Matrix6d::Identity();
   by_both.topRightCorner<3, 3>() = hat(T_cam_world[0].inverse().translation() - T_cam_world[1].inverse().translation());

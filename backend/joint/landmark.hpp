@@ -13,54 +13,52 @@
 
 namespace motorcade {
 
-/// What the pose of a frame is as a variable, by whose steps in the world's axes (see `displaced`) observations change:
-/// the camera's in the world, in which the landmarks rest, or the body's seen from the camera.
+/// The pose variable of a frame: the camera's in the world, in which the landmarks rest, or the body's seen from the
+/// camera. Observations change by its steps in the world's axes (see `displaced`).
 enum class FramePose { kWorldCam, kCamBody };
 
-/// One observation of a landmark: `frame` counts the frames of the factor that holds it.
+/// An observation of a landmark; `frame` counts the frames of the factor that holds it.
 struct LandmarkView {
   int frame = 0;
   Eigen::Vector3d uvd_px;
   Eigen::Vector3d inverse_sigma;  // of u, v, d [1/px]
 };
 
-/// How observations of landmarks count.
+/// Noise model of landmark observations.
 struct LandmarkNoise {
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 1.5;  // of an observation's whitened norm: three dimensions
-  /// Some landmarks are followed well, others slide along edges: each has a variance of its own. The prior of that
-  /// variance is a scaled inverse chi-squared distribution with so many degrees of freedom, so that the residuals of a
-  /// landmark follow a multivariate t distribution (Lange, Little and Taylor, JASA 1989). With 0, all are alike.
+  /// Degrees of freedom of the prior of a landmark's own variance, a scaled inverse chi-squared distribution: some
+  /// landmarks are followed well, others slide along edges. The residuals of a landmark then follow a multivariate t
+  /// distribution (Lange, Little and Taylor, JASA 1989). With 0, all are alike.
   double variance_freedom = 4;
-  /// Of an error that all disparities of a landmark share: what does not depend on the landmark, and a share of the
+  /// Error that all disparities of a landmark share: a part that does not depend on the landmark, and a share of the
   /// noise of one of its disparities.
   double shared_disparity_sigma_px = 0.1, shared_disparity_share = 0;
-  /// The standard deviation of an error that all disparities of a frame share. With 0, the cameras do not shake.
+  /// Standard deviation of an error that all disparities of a frame share. With 0, the cameras do not shake.
   double shake_sigma_px = 0;
 
   /// Mean square of a Gaussian residual under the weights of the loss, per dimension: E[w r^2] / 3.
   double meanSquare() const;
 };
 
-/// A landmark's unknowns, where its last view is: (u, v, d) there and the error that its disparities share.
+/// Unknowns of a landmark at its last view: (u, v, d) there and the error that its disparities share.
 using Vector4d = Eigen::Vector4d;
 using Matrix4d = Eigen::Matrix4d;
 
-/// Where a landmark was found to be, to begin from when it is fitted again.
+/// Place of a landmark from an earlier fit, from which the next fit begins.
 struct LandmarkEstimate {
   Eigen::Vector3d p_body;
   double shared_error_px = 0;
 };
 
-/// A landmark as its views tell it, in the camera of the newest: its unknowns, and their covariance if the poses are as
-/// they are taken to be.
+/// A landmark as its views tell it, in the camera of the newest: its unknowns, and their covariance given the poses.
 struct KnownLandmark {
   Vector4d unknowns;
   Matrix4d covariance;
 };
 
-/// An observation's linear model, whitened and weighted. Rows are contiguous: what is summed up are products J' J, J'
-/// B.
+/// Linear model of an observation, whitened and weighted. Rows are contiguous for the sums of products J' J, J' B.
 struct LinearView {
   /// [A D r] with the Jacobians by a step of the frame's pose and by the disparity offset, and the residual.
   Eigen::Matrix<double, 3, 8, Eigen::RowMajor> J;
@@ -71,23 +69,24 @@ struct LinearView {
 /// Fits landmarks to their views from known poses (variable projection: poses move, landmarks follow).
 class LandmarkFit {
  public:
-  /// `T_cam_body` of each frame, in which the landmark rests in the body. The offset is added to all disparities.
+  /// Fits in frames with these `T_cam_body`, for a landmark at rest in the body. The offset is added to all
+  /// disparities.
   LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, FramePose pose, std::span<const SE3> T_cam_body,
               double offset_px);
 
-  /// Begins from an estimate, if there is one, otherwise from the newest view. False when a view would lie behind its
-  /// camera or the landmark is at infinity.
+  /// Fits a landmark, from an estimate if there is one, else from the newest view. Returns false when a view would lie
+  /// behind its camera or the landmark is at infinity.
   bool operator()(std::span<const LandmarkView> views, const std::optional<LandmarkEstimate>& before = std::nullopt);
 
-  /// Weighted by the landmark's own variance, too.
+  /// Linear models of the views, also weighted by the landmark's own variance.
   std::span<const LinearView> views() const { return std::span(linear_).first(count_); }
   /// The landmark's own variance, in units of the one that its views claim.
   double variance() const { return variance_; }
-  /// Share of the information of `views` that is left as the variance is not known: (n + d) / (n + d + 2) with n
+  /// Share of the information of `views` that is left because the variance is unknown: (n + d) / (n + d + 2) with n
   /// degrees of freedom of the prior and d of the residuals, the Fisher information of the t distribution.
   double informationShare() const { return information_share_; }
   const Eigen::LLT<Matrix4d>& information() const { return llt_; }
-  /// One step on from where the landmark was linearized; empty when that is at infinity.
+  /// Estimate after one more step from where the landmark was linearized; empty when that is at infinity.
   std::optional<LandmarkEstimate> estimate() const;
   /// The same with its covariance.
   std::optional<KnownLandmark> known() const;
@@ -97,7 +96,7 @@ class LandmarkFit {
  private:
   bool beginFrom(const LandmarkEstimate& before);
   bool linearize(std::span<const LandmarkView> views);
-  /// Up to four views. `G` = d(p_body) / d(u, v, d of the newest view).
+  /// Linearizes up to four views. `G` = d(p_body) / d(u, v, d of the newest view).
   bool linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
                  LinearView* linear);
   void weighByOwnVariance();

@@ -43,7 +43,7 @@ void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_v
   shake_.observe(newest_->frames, newest_->shakes);
 }
 
-/// Tracks that ended become a factor for good.
+/// Makes lasting factors of the tracks that ended.
 void LandmarkBundles::closeEnded(const PoseVariable& pose_variable) {
   if (ended_.empty()) return;
   const Gathered gathered = gather(pointersTo(ended_), pose_variable);
@@ -75,7 +75,7 @@ LandmarkBundles::Gathered LandmarkBundles::gather(std::span<LandmarkTrack* const
   return gathered;
 }
 
-/// The result is empty when there is no landmark.
+/// Adds a bundle; empty when there is no landmark.
 std::optional<LandmarkBundles::Bundle> LandmarkBundles::addBundle(const Gathered& gathered,
                                                                   IncrementalSolver::Lifetime lifetime) {
   if (gathered.landmarks.count() == 0) return std::nullopt;

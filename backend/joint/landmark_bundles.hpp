@@ -10,8 +10,8 @@
 
 namespace motorcade {
 
-/// The landmarks of one body, and the factors that hold what their views say of the poses from which they were seen:
-/// one over the tracks that go on, made anew in each update, and lasting ones over the tracks that ended.
+/// Landmarks of one body, and the factors that hold their views' information on the poses from which they were seen.
+/// One factor over the tracks that go on is made anew in each update; lasting ones hold the tracks that ended.
 class LandmarkBundles {
  public:
   struct Params {
@@ -31,17 +31,17 @@ class LandmarkBundles {
   double designEffect() const { return noise_.designEffect(neighbors_per_view_); }
   bool hasNewest() const { return newest_.has_value(); }
 
-  /// Makes the factor over the tracks that go on, and over those that ended lately, anew; in one of some frames those
-  /// that ended get a factor for good. `frame_count` counts the frames of the drive from zero.
+  /// Makes the factor over the tracks that go on, and over those that ended lately, anew. In one of some frames ended
+  /// tracks get a lasting factor. `frame_count` counts the frames of the drive from zero.
   void renew(std::int64_t frame_count, const PoseVariable& pose_variable);
-  /// The factors over ended tracks anew, as the offset has moved.
+  /// Makes the factors over ended tracks anew, as the offset has moved.
   void relinearize(const PoseVariable& pose_variable);
-  /// Factors over ended tracks stay as they are from now on.
+  /// Fixes the factors over ended tracks.
   void fix() { closed_.clear(); }
-  /// Frames up to this one are about to leave the graph: what lasting factors say of them stays as it is, and the one
-  /// over the tracks that go on is made anew without them.
+  /// Prepares for frames up to this one to leave the graph. Lasting factors keep what they say of them; the factor over
+  /// the tracks that go on is made anew without them.
   void retire(FrameId oldest);
-  /// The body's poses have gone, and the factors with them.
+  /// Forgets the body's poses, which have gone, and the factors with them.
   void drop();
 
  private:
@@ -56,7 +56,7 @@ class LandmarkBundles {
     std::vector<FrameId> frames;
     std::vector<FrameShake> shakes;  // of the frames, where the landmarks tell them
   };
-  /// Landmarks with at least two views from poses that the graph holds, and the tracks that they are.
+  /// Landmarks with at least two views from poses in the graph, and their tracks.
   struct Gathered {
     FrameIndex index;
     LandmarkViews landmarks;

@@ -19,18 +19,18 @@ struct LandmarkViews {
   }
 };
 
-/// The disparity error of one frame, to be added to its disparities. Its variance holds where poses are as they are
-/// taken to be.
+/// Disparity error of one frame, to be added to its disparities. Its variance holds for the poses as they are taken to
+/// be.
 struct FrameShake {
   double px = 0, variance_px2 = 0;
 };
 
-/// The camera's motion around a body as image measurements tell it. The body's landmarks are eliminated (Schur
+/// Information of image measurements on the camera's motion around a body. The body's landmarks are eliminated (Schur
 /// complement): with r_jk = Sigma^-1/2 [ y_jk + (offset + shake_k) e_d - pi(T_k l_j) ],
 ///   H = sum(A'A - A'B (B'B)^-1 B'A)
 /// around the poses T_k = T_cam_body and the disparity offset at which they were linearized. The shakes of the frames
-/// are eliminated next; their mean is zero. Poses that all move as one leave the system as it is, as the landmarks
-/// follow: H of such a step is zero, and so is its product with g.
+/// are eliminated next; their mean is zero. Landmarks follow when all poses move as one: H of such a step is zero, and
+/// so is its product with g.
 struct EliminatedLandmarks {
   FramePose pose = FramePose::kWorldCam;  // by whose steps
   std::vector<SE3> T_cam_body;            // of each frame

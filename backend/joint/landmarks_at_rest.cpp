@@ -64,7 +64,7 @@ void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames) 
 
 void LandmarksAtRest::relinearize(const Frames& frames) { bundles_.relinearize(camerasOf(frames)); }
 
-/// The result is empty when too few landmarks are known.
+/// Aligns the newest camera; empty when too few landmarks are known.
 std::optional<FactorId> LandmarksAtRest::alignNewest(const Frames& frames) {
   const std::vector<LandmarkTrack*> tracks = bundles_.points().seenNow();
   if (tracks.empty()) return std::nullopt;
@@ -83,8 +83,8 @@ std::optional<FactorId> LandmarksAtRest::alignNewest(const Frames& frames) {
   return solver_.addFactor(std::make_unique<BundleFactor>(std::move(poses), offset_.variable(), std::move(known)));
 }
 
-/// Views in the newest frame of landmarks that were seen in the one before, fitted to their earlier views where the
-/// poses are now.
+/// Views in the newest frame of landmarks that the frame before saw; they are fitted to their earlier views at the
+/// present poses.
 std::vector<ViewOfKnown> LandmarksAtRest::knownViews(std::span<LandmarkTrack* const> tracks, const FrameIndex& index,
                                                      std::span<const SE3> T_cam_world, FrameId before) {
   LandmarkFit fit(camera_, params_.static_noise, FramePose::kWorldCam, T_cam_world, offset_.px());

@@ -11,9 +11,9 @@
 
 namespace motorcade {
 
-/// The landmarks of the world, which tell how the camera moves. They are many, and eliminated in one of some frames. In
-/// the others they stay where they were found to be, and the newest camera is aligned to them, until the next
-/// elimination takes that back.
+/// Landmarks of the world, which tell how the camera moves. They are many, and eliminated in one of some frames. In the
+/// other frames they stay where they were found, and the newest camera is aligned to them; the next elimination takes
+/// that back.
 class LandmarksAtRest {
  public:
   using Frames = std::map<FrameId, CameraRecord>;  // of the window, with the newest
@@ -23,14 +23,14 @@ class LandmarksAtRest {
 
   LandmarkBundles& bundles() { return bundles_; }
   const NoiseLevel& noise() const { return bundles_.noise(); }
-  /// The factor by which variances grow, see NoiseLevel.
+  /// Factor by which variances grow, see NoiseLevel.
   double designEffect() const { return bundles_.designEffect(); }
-  /// How many landmarks of the newest frame were seen before.
+  /// Number of landmarks of the newest frame that were seen before.
   int seenAgain();
 
   /// Links the newest camera; `frame_count` counts the frames of the drive from zero.
   void add(std::int64_t frame_count, const Frames& frames);
-  /// Eliminates what the newest cameras are aligned to. False when there is nothing to do.
+  /// Eliminates the landmarks to which the newest cameras are aligned. Returns false when there is nothing to do.
   bool eliminateAligned(std::int64_t frame_count, const Frames& frames);
   void relinearize(const Frames& frames);
 
@@ -49,7 +49,7 @@ class LandmarksAtRest {
   std::vector<FactorId> alignments_;  // of cameras, since landmarks were eliminated
 };
 
-/// The cameras of the frames, which must outlive this.
+/// Camera variables of the frames, which must outlive this.
 PoseVariable camerasOf(const LandmarksAtRest::Frames& frames);
 
 }  // namespace motorcade

@@ -9,9 +9,8 @@
 
 namespace motorcade {
 
-/// Goes through what is known of points and through measurements of some of them, both ordered by point: calls
-/// `seen(measurement, known)`, with null for a new point, and `unseen(known)`, in that order. `point_of` tells an
-/// item's.
+/// Walks through known points and measurements of some of them, both ordered by point. Calls `seen(measurement,
+/// known)`, with null for a new point, and `unseen(known)`, in that order. `point_of` returns an item's point.
 template <class Item, class PointOf, class Seen, class Unseen>
 void mergeByPoint(std::vector<Item>& known, std::span<const PointMeasurement> measurements, const PointOf& point_of,
                   const Seen& seen, const Unseen& unseen) {

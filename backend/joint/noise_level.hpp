@@ -8,15 +8,15 @@ namespace motorcade {
 class NoiseLevel {
  public:
   NoiseLevel() = default;
-  /// Of another body in the same images: begins as `known` and learns on its own.
+  /// Level of another body in the same images: it begins as `known` and learns on its own.
   static NoiseLevel like(const NoiseLevel& known);
 
   void learn(const ResidualLevels& levels);
   double uv() const;
   double d() const;
-  /// Of (u, v, d).
+  /// Factors of (u, v, d).
   Eigen::Vector3d sigmas() const { return {uv(), uv(), d()}; }
-  /// The factor by which variances grow as residuals are not independent, at least 1. It has two parts:
+  /// Factor by which variances grow because residuals are not independent, at least 1. It has two parts:
   ///   1 + n rho          n neighbors in the same cell of the image, with the correlation rho (design effect of cluster
   ///                      samples: Kish, Survey Sampling, 1965)
   ///   (1 + c) / (1 - c)  successive residuals of a landmark, with the correlation c (autoregressive process of first

@@ -46,8 +46,8 @@ SE3 ObjectChain::cameraMotion(const ObjectRecord& before, const ObjectRecord& no
   return solver_.pose(frames_.at(before.seen.frame).x).inverse() * solver_.pose(frames_.at(now.seen.frame).x);
 }
 
-/// The points at rest tell the camera's motion a thousand times as well as an object could, whose acceleration is
-/// unknown. So the camera's motion enters as known, and objects remain independent of each other.
+/// Adds the motion factors between two poses of an object. The camera's motion enters as known: points at rest tell it
+/// a thousand times as well as an object of unknown acceleration could. So objects remain independent of each other.
 void ObjectChain::addMotion(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& now) {
   ConstantTwistFactor::Variables variables{
       .c_a = before.pose, .w_a = before.twist, .c_b = now.pose, .w_b = now.twist, .x_a = {}, .x_b = {}};

@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// How objects move from frame to frame, as factors on their poses c seen from the camera and their twists w: a
-/// constant twist but for white noise on acceleration, and rolling along the axes of travel, which are the variable
-/// that all frames of an object share.
+/// Motion of objects from frame to frame, as factors on their poses c seen from the camera and their twists w. The
+/// twist is constant but for white noise on acceleration, and bodies roll along the axes of travel, which are the
+/// variable that all frames of an object share.
 class ObjectChain {
  public:
   /// `frames` are those of the window.
@@ -17,11 +17,11 @@ class ObjectChain {
               const std::map<FrameId, CameraRecord>& frames)
       : params_(params), use_smoothness_(use_smoothness), solver_(solver), frames_(frames) {}
 
-  /// The track's first pose, which is its gauge.
+  /// Adds the track's first pose, which is its gauge.
   void begin(ObjectTrack& track, ObjectRecord& record);
-  /// A further pose, where the motion of the record before puts it.
+  /// Adds a further pose, where the motion of the record before puts it.
   void extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record);
-  /// The camera's motion is known better when its landmarks have ended: an object's motion is told from it anew.
+  /// Renews an object's motion from the camera's, which is known better when its landmarks have ended.
   void renewMotion(ObjectTrack& track, FrameId newest);
 
   /// Axes of travel in those of the body's variables.

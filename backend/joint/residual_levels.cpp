@@ -14,13 +14,13 @@ std::size_t cellOf(const StereoCamera& camera, const Eigen::Vector3d& uvd_px) {
   return kColumns * place(uvd_px.y() / camera.height_px, kRows) + place(uvd_px.x() / camera.width_px, kColumns);
 }
 
-/// Vectors added up by cell of the image, over all frames, so that each meets those of the other landmarks in its cell.
+/// Sums of vectors by cell of the image, over all frames, so that each meets those of the other landmarks in its cell.
 template <int N>
 class CellSums {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  /// `value` of each view of a landmark.
+  /// Adds the `value` of each view of a landmark.
   template <class ValueOf>
   void add(const StereoCamera& camera, std::span<const LandmarkView> views, const ValueOf& value) {
     for (std::size_t i = 0; i < views.size();) {

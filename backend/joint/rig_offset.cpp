@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kHeldSigma_px = 1e-5;  // of a held offset: very long drives do not move it either
 constexpr double kClearSigma_px = 0.1;  // of an observed offset, from which on it is looked at
-/// What looks like an offset up to here may be distortion. It is one of half a pixel: while the offset is held, the
-/// landmarks that show it best look noisy, and count so little that a fifth of it is missed.
+/// Largest observed offset that may be distortion. It stands for half a pixel: while the offset is held, the landmarks
+/// that show it best look noisy, count little, and hide a fifth of it.
 constexpr double kDistortion_px = 0.4;
 constexpr double kStep_px = 0.1;          // of the offset, after which landmarks are eliminated anew
 constexpr int kFirstLook_frames = 8;      // after which the offset is looked at
@@ -36,7 +36,7 @@ double RigOffset::sigma_px() const {
   return covariance ? std::sqrt((*covariance)(0, 0)) : kHeldSigma_px;
 }
 
-/// The landmarks alone say this of the offset: the posterior without its prior.
+/// Offset by the landmarks alone: the posterior without its prior.
 std::optional<double> RigOffset::observed_px() const {
   const auto covariance = solver_.jointCovariance(std::span(&variable_, 1));
   if (!covariance) return std::nullopt;

@@ -30,8 +30,8 @@ std::vector<double> RigShake::px(std::span<const FrameId> frames) const {
   return px;
 }
 
-/// Shakes without their mean have (n - 1) / n of their variance. A frame that is learned from keeps its shake: few
-/// landmarks tell it once it is one of the oldest, all with the same trend.
+/// Shakes without their mean have (n - 1) / n of their variance. A frame that was learned from keeps its shake: once it
+/// is one of the oldest, few landmarks tell it, all with the same trend.
 void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes) {
   const double count = static_cast<double>(shakes.size()), with_mean = count > 1 ? count / (count - 1) : 1;
   for (std::size_t k = 0; k < shakes.size(); ++k) {
@@ -43,8 +43,8 @@ void RigShake::observe(std::span<const FrameId> frames, std::span<const FrameSha
   }
 }
 
-/// The landmarks alone, without the prior, tell a shake s with the variance v, so that s^2 - v is that of the shakes in
-/// the mean (method of moments), with a variance of 2 (sigma^2 + v)^2.
+/// Learns the variance by the method of moments. The landmarks alone, without the prior, tell a shake s with the
+/// variance v. The mean of s^2 - v is the variance of the shakes; its own variance is 2 (sigma^2 + v)^2.
 void RigShake::learn(const FrameShake& shake) {
   const double sigma = sigma_px(), told = 1 / shake.variance_px2 - 1 / (sigma * sigma);
   if (!(told > 0)) return;

@@ -9,21 +9,21 @@
 
 namespace motorcade {
 
-/// The shake of the two cameras against each other: in each frame, all disparities are off by the same error. It is
-/// white noise, whose standard deviation the landmarks at rest tell.
+/// Shake of the two cameras against each other: in each frame, all disparities are off by the same error. It is white
+/// noise, whose standard deviation the landmarks at rest tell.
 class RigShake {
  public:
-  /// `sigma_px` is what the deviation is taken to be before it is seen; with 0 the cameras never shake.
+  /// `sigma_px` is the assumed deviation before the shake is seen; with 0 the cameras never shake.
   explicit RigShake(double sigma_px) : first_sigma_px_(sigma_px) {}
 
-  /// The standard deviation as it was found.
+  /// Standard deviation as it was found.
   double sigma_px() const;
-  /// What is to be added to the disparities of these frames; 0 where that is not known.
+  /// Corrections to add to the disparities of these frames; 0 where they are not known.
   std::vector<double> px(std::span<const FrameId> frames) const;
 
-  /// The shakes of frames as the landmarks tell them with a prior of `sigma_px`, oldest first.
+  /// Takes in the shakes of frames as the landmarks tell them with a prior of `sigma_px`, oldest first.
   void observe(std::span<const FrameId> frames, std::span<const FrameShake> shakes);
-  /// This frame and what is older are not asked for any more.
+  /// Forgets this frame and older ones, which are not asked for any more.
   void forget(FrameId oldest) { px_.erase(px_.begin(), px_.upper_bound(oldest)); }
 
  private:

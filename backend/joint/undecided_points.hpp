@@ -8,20 +8,20 @@
 
 namespace motorcade {
 
-/// The latest views of points of which it is not known yet to what body they belong. Nobody can tell from a point's
-/// first view, and a vehicle's points are known by how they move: their first views would be lost.
+/// Latest views of points whose body is not known yet. A point's first view cannot tell its body, and a vehicle's
+/// points are known by how they move: without this, their first views would be lost.
 class UndecidedPoints {
  public:
   static constexpr int kMostViews = 4;  // that are kept of a point
 
-  /// The points that are undecided in one frame, in frame order, ordered by point.
+  /// Adds the undecided points of one frame, in frame order, ordered by point.
   void observe(FrameId frame, std::span<const PointMeasurement> points);
-  /// The views of a point before `frame`, oldest first, now that its body is known; they are kept no longer. None when
-  /// there were more than `most`: what does not show soon where it belongs may not belong there from the start.
+  /// Takes the views of a point before `frame`, oldest first, now that its body is known. Returns none when there were
+  /// more than `most`: a point that takes long to show its body may not have belonged to it from the start.
   std::vector<LandmarkTrack::View> take(PointId point, FrameId frame, int most);
 
  private:
-  /// There are many, and most of them live for a few frames: none has memory of its own.
+  /// A known point. Most live for a few frames and they are many, so none has memory of its own.
   struct Known {
     PointId point;
     int count = 0;                                      // of views; none when they were taken

@@ -43,8 +43,8 @@ std::optional<TriangulatedPoint> triangulate(const StereoCamera& camera, const B
   return TriangulatedPoint{T_body_cam * camera.triangulate(uvd_px), J * variance_px2.asDiagonal() * J.transpose()};
 }
 
-/// With b the body as it stood before, and X = T_cam_b its pose as its points' motion carries it into the camera of
-/// now: z_before^-1 z_now = T_cam_body(before)^-1 T_cam(before)_cam(now) X.
+/// z_before^-1 z_now = T_cam_body(before)^-1 T_cam(before)_cam(now) T_cam_b. Here b is the body as it stood before, and
+/// T_cam_b its pose in the camera of now, as its points' motion carries it there.
 std::optional<ObjectObservation::Motion> motionBetween(const StereoCamera& camera, const BodyView& before,
                                                        const BodyView& now, const CameraPath& path,
                                                        const std::function<bool(PointId)>& uses) {

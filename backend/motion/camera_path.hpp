@@ -7,8 +7,7 @@
 
 namespace motorcade {
 
-/// The camera's path as odometry tells it, frame by frame: of the last frames, enough for observations from before an
-/// object's confirmation.
+/// The camera's path by odometry over the last frames, enough for observations from before an object's confirmation.
 class CameraPath {
  public:
   struct Camera {
@@ -18,9 +17,9 @@ class CameraPath {
     Matrix6d pose_covariance;  // of T_world_cam by right perturbation, the steps taken as independent
   };
 
-  /// Call in frame order. A motion that is no number is taken as standing still.
+  /// Adds a frame, in order. A motion that is not finite is taken as standing still.
   void add(const FrameMeasurements& measurements);
-  /// Null for a frame that is gone or was never added.
+  /// Returns null for a frame that is gone or was never added.
   const Camera* find(FrameId frame) const;
   /// Covariance of T_cam(since)_cam(now) by right perturbation, the steps taken as independent; empty when the path
   /// does not reach so far back.

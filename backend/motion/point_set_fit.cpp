@@ -21,7 +21,7 @@ struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();         // J' W J and the prior
   Vector6d gradient = Vector6d::Zero();  // of half the cost
 
-  /// False when the point lies behind the camera.
+  /// Adds a point; false when it lies behind the camera.
   bool add(const StereoCamera& camera, const SeenPoint& point, const SE3& T_cam_ref, RobustLoss loss) {
     const auto predicted = camera.project(T_cam_ref * point.p_ref);
     if (!predicted) return false;

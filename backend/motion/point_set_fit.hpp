@@ -10,14 +10,14 @@
 
 namespace motorcade {
 
-/// A point known in a rigid frame `ref` (the camera of an earlier frame, or a body) and seen by the stereo camera now.
+/// A point in a rigid frame `ref` (the camera of an earlier frame, or a body), seen by the stereo camera now.
 struct SeenPoint {
   Eigen::Vector3d p_ref;
   Eigen::Matrix3d covariance_ref;  // of p_ref [m^2]
   Eigen::Vector3d uvd_px, sigma_px;
 };
 
-/// Where the frame `ref` is expected, and how far it may be from there: closes the directions that points leave open.
+/// Expected pose of the frame `ref` and its deviations, which close the directions that points leave open.
 struct ExpectedPose {
   SE3 T_cam_ref;
   Vector6d sigma;  // [m, rad], right perturbation

@@ -1,4 +1,4 @@
-/// The part of AnchoredPoseGraph that tells how objects move, and how surely.
+/// Estimates of objects by AnchoredPoseGraph: how they move, and how surely.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ Vector6d twist(const SE3& T_world_before, const SE3& T_world_after, double dt_s)
   return (T_world_before.inverse() * T_world_after).log() / dt_s;
 }
 
-/// The pose of the same object before a frame's, else the one after it; null when the graph has neither.
+/// Returns the object's pose before a frame, else the one after it; null when the graph has neither.
 const ObjectRecord* neighborInTime(const ObjectTrack& track, FrameId frame) {
   const auto now = track.records.find(frame);
   if (now != track.records.begin() && std::prev(now)->second.pose.valid()) return &std::prev(now)->second;
@@ -61,7 +61,7 @@ ObjectMotionEstimate AnchoredPoseGraph::objectMotion(const ObjectTrack& track, F
   return {objectPose(track, frame).rotation() * twist->head<3>(), (*twist)[5]};
 }
 
-/// The mean of the body twists to the poses before and after, as far as there are any. It is exact on arcs of constant
+/// Mean of the body twists to the poses before and after, as far as there are any. It is exact on arcs of constant
 /// speed.
 std::optional<Vector6d> AnchoredPoseGraph::meanTwist(const ObjectTrack& track, FrameId frame) const {
   const auto now = track.records.find(frame);

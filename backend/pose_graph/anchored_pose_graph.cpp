@@ -93,7 +93,7 @@ void AnchoredPoseGraph::startTrack(ObjectTrack& track, const SE3& T_world_body) 
   addPrior(track.shared, T_world_body, params_.anchor_sigma_m, params_.anchor_sigma_rad);
 }
 
-/// Where the object is expected in its own graph: from its motion if measured, else from where the camera sees it.
+/// Expected pose of the object in its own graph: from its motion if measured, else from the camera's view of it.
 SE3 AnchoredPoseGraph::predictedPose(const ObjectTrack& track, const ObjectObservation& seen) const {
   if (seen.motion && params_.use_motion && isFinite(seen.motion->T_before_now)) {
     const auto before = track.records.find(seen.motion->since);
@@ -122,7 +122,7 @@ void AnchoredPoseGraph::addObservation(const ObjectObservation& seen, double enc
     addPrior(record.pose, solver_.pose(record.pose), params_.anchor_sigma_m, params_.anchor_sigma_rad);
 }
 
-/// False when there is nothing to constrain the pose with.
+/// Constrains a pose; false when there is nothing to constrain it with.
 bool AnchoredPoseGraph::constrain(const ObjectTrack& track, const ObjectRecord& record, double encounter_share) {
   bool constrained = false;
   if (record.seen.state != ObjectState::kPredicted) {

@@ -29,8 +29,8 @@ class AnchoredPoseGraph final : public SmoothingWindow {
   void addCamera(const FrameMeasurements& measurements);
   void addObjects(const FrameMeasurements& measurements);
   void addObservation(const ObjectObservation& seen, double encounter_share);
-  /// An object-object encounter is made from the same two camera encounters, not measured anew. So it takes a share of
-  /// their information, and they keep the rest: what all of them say together is no more than what was measured.
+  /// Adds an object-object encounter, which is made from two camera encounters, not measured anew. It takes a share of
+  /// their information, and they keep the rest, so that together they say no more than what was measured.
   void addObjectEncounter(const ObjectObservation& m, const ObjectObservation& n, double share_m, double share_n);
   void startTrack(ObjectTrack& track, const SE3& T_world_body);
   bool constrain(const ObjectTrack& track, const ObjectRecord& record, double encounter_share);

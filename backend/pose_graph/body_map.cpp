@@ -16,7 +16,7 @@ Matrix3x6d byPose(const Eigen::Vector3d& p_body) {
   return J;
 }
 
-/// A Kalman step; the error of the view's pose counts as part of the measurement's.
+/// Corrects a point by a Kalman step; the error of the view's pose counts as part of the measurement's.
 void correct(TriangulatedPoint& p, const StereoCamera& camera, const SE3& T_cam_body, const Matrix6d& pose_covariance,
              const Eigen::Vector3d& uvd_px, const Eigen::Vector3d& sigma_px) {
   const Eigen::Vector3d p_cam = T_cam_body * p.p_body;

@@ -5,13 +5,14 @@ namespace {
 
 constexpr std::size_t kSplitPoints = 24;  // from here on, an eighth of them can measure a motion
 constexpr double kTwistGain = 0.3;        // of the newest motion in the mean: expectations need not be better
-/// Of the first encounter, which says where the body's frame lies: next to nothing beside any measurement.
+/// Deviation of the first encounter, which defines the body's frame: next to nothing beside any measurement.
 constexpr double kDefined = 1e-3;  // m, rad
 
 bool any(PointId) { return true; }
 bool measuresMotions(PointId point) { return point.value % 4 == 3; }
 bool measuresEncounters(PointId point) { return !measuresMotions(point); }
-/// Each point's measurements of two successive frames serve one motion.
+/// True for a point that measures the motion into a frame: each point's measurements of two successive frames serve one
+/// motion.
 bool measuresMotionInto(FrameId frame, PointId point) {
   return measuresMotions(point) && (point.value / 4) % 2 == frame.value % 2;
 }
@@ -48,7 +49,7 @@ void ObjectMeasurer::start(ObjectObservation& seen, double disparity_offset_px) 
   remember(body, {seen.frame, seen.measured, disparity_offset_px, seen.T_cam_body}, Matrix6d::Zero());
 }
 
-/// At constant twist from the last observation.
+/// Pose at constant twist from the last observation.
 SE3 ObjectMeasurer::expectedPose(const Body& body, FrameId frame) const {
   const auto *then = path_.find(body.frame), *now = path_.find(frame);
   const double dt_s = secondsBetween(then->stamp, now->stamp);

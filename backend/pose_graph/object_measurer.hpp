@@ -13,20 +13,20 @@
 
 namespace motorcade {
 
-/// Measures encounters and motions of objects from their points, in place of those that the front-end concluded. What
-/// it takes from the front-end is where a body's frame lies at first: that is a choice, not a measurement.
+/// Measures encounters and motions of objects from their points, in place of those that the front-end concluded. It
+/// takes from the front-end only where a body's frame lies at first, which is a choice, not a measurement.
 ///
 /// No measurement of a point enters two factors. Three quarters of the points, by their ids, measure encounters,
-/// against the body's map. The last quarter measures motions, and of those one half the motions into even frames, the
-/// other half those into odd ones: a motion takes a point's measurements of two frames, so that each is taken once.
-/// With few points all of them measure the encounter, and there is no motion. (Ids decide, so that a point has the same
-/// role in all frames. Both halves of a split in two were a tenth worse on three scenes, and elsewhere the same.)
+/// against the body's map. The last quarter measures motions, half of it into even frames, the other half into odd
+/// ones: a motion takes a point's measurements of two frames, so each is taken once. With few points all of them
+/// measure the encounter, and there is no motion. Ids decide, so that a point has the same role in all frames. Two
+/// equal halves were a tenth worse on three scenes, and elsewhere the same.
 class ObjectMeasurer {
  public:
   explicit ObjectMeasurer(const StereoCamera& camera) : camera_(camera) {}
 
-  /// The same measurements with the objects' poses, motions and covariances anew. Call in frame order. Observations
-  /// without points are left as they are.
+  /// Returns the same measurements with new poses, motions and covariances of objects. Call in frame order.
+  /// Observations without points are left as they are.
   FrameMeasurements operator()(const FrameMeasurements& measurements);
 
  private:

@@ -11,11 +11,11 @@ namespace motorcade {
 /// Two observations of one frame, by index.
 using ObjectPair = std::pair<std::size_t, std::size_t>;
 
-/// Nearest pairs first, no object with more than `max_partners`.
+/// Pairs of objects, nearest first; no object has more than `max_partners`.
 std::vector<ObjectPair> nearestPairs(std::span<const ObjectObservation* const> observations, double max_distance_m,
                                      int max_partners);
 
-/// T_m_n from two poses seen by one camera, and its covariance (right perturbation) from theirs, scaled.
+/// Relative pose T_m_n of two bodies seen by one camera. Its covariance (right perturbation) is from theirs, scaled.
 struct RelativePose {
   SE3 T_m_n;
   Matrix6d covariance;

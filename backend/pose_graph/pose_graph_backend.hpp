@@ -13,7 +13,7 @@ class PoseGraphSmoother final : public WindowBackend {
   explicit PoseGraphSmoother(const PoseGraphParams& params, const WindowParams& window = {});
 };
 
-/// The same from observations of points: encounters and motions are measured two frames at a time and then smoothed.
+/// The same graph from points: encounters and motions are measured two frames at a time and then smoothed.
 class PoseGraphBackend final : public Backend {
  public:
   using Params = PoseGraphParams;

@@ -27,19 +27,19 @@ struct PoseGraphParams {
   double object_origin_sigma_m = 1e-3, object_origin_sigma_rad = 1e-4;
   double anchor_sigma_m = 100.0, anchor_sigma_rad = 3.0;
 
-  /// Of the smooth motion factors.
+  /// Noise of the smooth motion factors.
   AccelerationNoise acceleration{
       .along_mps2 = 1.0, .sideways_mps2 = 0.5, .vertical_mps2 = 0.3, .yaw_radps2 = 0.07, .tilt_radps2 = 0.03};
 
   /// Share of two camera encounters' information that goes to the encounter of the two objects.
   double object_encounter_share = 0.2;
-  /// Which pairs get an encounter: objects at most this far apart, each with at most so many others.
+  /// Largest distance of two objects with an encounter, and most partners of an object.
   double object_encounter_distance_m = 15.0;
   int object_encounter_partners = 1;
 
   RelinearizationPolicy policy = RelinearizationPolicy::kFluid;
   int relinearize_every_updates = 50;  // of kEveryN
-  /// Of kFluid: see IncrementalSolver::Params.
+  /// Parameters of kFluid, see IncrementalSolver::Params.
   double mismatch_tolerance = 0.02, jacobian_drift_sigmas = 0.3, substitution_tolerance = 0.02;
   int iterations_per_update = 2;
   int final_iterations = 10;  // at most, when the drive has ended

@@ -37,7 +37,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   return result_;
 }
 
-/// Cliques with work hang together, from the roots downwards.
+/// Solves the cliques with work, which hang together from the roots downwards.
 void BackSubstitution::solveWork(double threshold_sigmas) {
   open_.clear();
   for (const int root : tree_.roots())

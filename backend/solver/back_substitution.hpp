@@ -11,8 +11,8 @@
 namespace motorcade {
 
 /// Solves for x from the roots of the tree downwards, as far as anything changed: in cliques with work, and below
-/// variables that moved. Where a call may not go on, the next one does, with what has waited longest: x there is what
-/// it was some updates ago, while R and its right-hand side are those of now.
+/// variables that moved. A call that has to stop leaves the rest to the next one, which begins with what has waited
+/// longest. Until then x there is some updates old, while R and its right-hand side are those of now.
 class BackSubstitution {
  public:
   struct Result {
@@ -25,12 +25,12 @@ class BackSubstitution {
   BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, const EliminationBudget& budget)
       : graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
-  /// A variable has moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional
-  /// standard deviations; smaller steps do not spread. Solves all cliques with work, and up to about `most_scalars`
-  /// below them, as long as there is time.
+  /// Solves all cliques with work, and up to about `most_scalars` below them, as long as there is time. A variable has
+  /// moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional standard deviations.
+  /// Smaller steps do not spread.
   Result operator()(double threshold_sigmas, std::int64_t most_scalars);
-  /// Have all variables of the factor followed the steps of those above them? Otherwise some of them are where they are
-  /// now, and others where they were some updates ago.
+  /// True when all variables of the factor have followed the steps of those above them. Otherwise some of them are
+  /// where they were some updates ago.
   bool hasFollowed(FactorId factor) const;
   /// Scalars of the cliques that wait for a later call.
   std::int64_t waitingScalars() const;
@@ -39,7 +39,7 @@ class BackSubstitution {
   using Solution = std::int64_t;  // number of a solved clique, counted over all calls
 
   void solveWork(double threshold_sigmas);
-  /// Its separator may have moved by that solution or a later one.
+  /// Solves a clique whose separator may have moved by that solution or a later one.
   void solve(const Clique& clique, Solution since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);
   void putOff(const Clique& clique, Solution since);
@@ -53,10 +53,10 @@ class BackSubstitution {
   std::vector<VariableId> moved_;
   std::vector<int> solved_;
   std::vector<int> open_;  // cliques with work to solve
-  /// Frontal variables of cliques that wait, those that wait longest first: cliques may be gone by the time.
+  /// Frontal variables of waiting cliques, those that wait longest first; their cliques may be gone by the time.
   std::vector<VariableId> waiting_;
   std::size_t first_waiting_ = 0;  // those before it are done
-  /// Per variable: its last solution, the last by which it moved, and since which one it waits; 0: none.
+  /// Solutions per variable: its last, the last that moved it, and the one since which it waits; 0: none.
   std::vector<Solution> solved_by_, moved_by_, waiting_since_;
   std::vector<double> x_separator_, x_frontal_;
 };

@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// What a step of the solver does with each clique. A change of a clique reaches all cliques above it, up to the root;
-/// a clique with more than one kind of work gets the most thorough.
+/// Work of a solver's step on each clique. A change of a clique reaches all cliques above it, up to the root. A clique
+/// with more than one kind of work gets the most thorough.
 class CliqueWork {
  public:
   enum class Kind : char {
@@ -21,24 +21,24 @@ class CliqueWork {
 
   explicit CliqueWork(const EliminationTree& tree) : tree_(tree) {}
 
-  /// Begins a step: no clique has work.
+  /// Begins a step, in which no clique has work yet.
   void begin();
   void markRemoved(int clique);
   void markRefresh(int clique) { mark(clique, Kind::kRefresh); }
-  /// The change of the clique's right-hand side, in the rows of its front, to add to before the next mark. Empty when
-  /// the clique is eliminated anew.
+  /// Marks a clique for a new right-hand side. Returns the change, in the rows of its front, to add to before the next
+  /// mark; empty when the clique is eliminated anew.
   std::span<double> markShift(int clique);
 
-  /// Shifts and refreshes what is marked so, children before parents.
+  /// Shifts and refreshes the cliques so marked, children before parents.
   void apply(Eliminator& eliminator);
-  /// The marked cliques of which the tree can take leave now; they have no more work.
+  /// Releases the marked cliques, which the tree can remove now; they have no more work.
   std::span<const int> releaseRemoved();
   void markNew(std::span<const int> cliques);
-  /// The clique was solved.
+  /// Notes that the clique was solved.
   void finish(int clique) { kind_[clique] = Kind::kNone; }
 
   bool has(int clique) const { return kind_[clique] != Kind::kNone; }
-  /// The clique is eliminated anew in any case.
+  /// True when the clique is eliminated anew in any case.
   bool isEliminated(int clique) const { return kind_[clique] >= Kind::kRefresh; }
   std::span<const int> removed() const { return removed_; }
 

@@ -6,9 +6,9 @@
 namespace motorcade {
 namespace {
 
-/// Substituting a scalar and comparing the models that it moves costs an eighth of eliminating one.
+/// Substitutions at the cost of one elimination: substituting a scalar includes comparing the models that it moves.
 constexpr std::int64_t kSubstitutionsPerElimination = 8;
-/// Budgets, or an update would in the end cost a multiple of it.
+/// Most that accumulates, in budgets of one update; with more, an update could cost a multiple of its budget.
 constexpr std::int64_t kMostSaved = 1;
 constexpr double kPaceShare = 0.1;  // of a faster elimination in the mean pace; a slower one is the pace from then on
 constexpr double kEliminationShare = 0.5;  // of the time

@@ -6,21 +6,21 @@
 namespace motorcade {
 namespace {
 
-/// Of the turn at which relinearization is urgent: a Jacobian that drifted is urgent however little its variables
+/// Share of the urgent turn at which variables with a drifted Jacobian are marked: it is urgent however little they
 /// turned.
 constexpr double kDriftedShare = 1.0001;
-/// Of the worst variable's turn: connected variables that turned more are relinearized with it.
+/// Share of the worst variable's turn above which connected variables are relinearized with it.
 constexpr double kTurnedWithShare = 0.1;
 constexpr double kLeastStaleness_rad = 1e-12;  // tells a stale variable that has not turned from one that is not stale
 /// Stale variables are sorted a few at a time, as the budget seldom reaches farther; and a region has to end somewhere.
 constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
-/// Drifts at which Jacobians are taken anew: up to so many of them residuals are still corrected.
+/// Drifts, in those at which Jacobians are taken anew, up to which residuals are still corrected.
 constexpr double kTrustedDrifts = 4;
 constexpr std::size_t kLeastLookedAt = 128;  // variables that moved, in a step
 constexpr std::size_t kMostPutOff = 32;      // residuals that a step follows towards the root in vain
 
-/// Of a variable among the rows of a clique's front.
+/// First row of a variable in a clique's front.
 int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
   int row = 0;
   for (const VariableId u : clique.variables) {
@@ -30,8 +30,8 @@ int firstRowOf(VariableId v, const Clique& clique, const FactorGraph& graph) {
   return row;
 }
 
-/// A quadratic's term in a vector stays right wherever the vector goes. It may be in very many of them, as an offset
-/// that all measurements share is.
+/// True for a vector in a quadratic, whose term stays right wherever the vector goes. A vector may be in very many of
+/// them, as an offset that all measurements share is.
 bool entersLinearly(VariableId v, FactorId factor, const FactorGraph& graph) {
   return graph.states().isVector(v) && !graph.models().isJacobian(factor);
 }
@@ -51,9 +51,9 @@ void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
   to_look_at_.erase(to_look_at_.begin(), to_look_at_.begin() + static_cast<std::ptrdiff_t>(seen));
 }
 
-/// Estimates that followed a step halfway are bent where the step ends. Models that were corrected or linearized there
-/// would be so for an estimate that nobody asked for: they wait until all of their variables have followed. The last of
-/// them is in the clique that a factor belongs to.
+/// Compares models that waited for their variables to follow a step. Estimates that followed it halfway are bent where
+/// the step ends, and models corrected or linearized there would fit an estimate that nobody asked for. The last of a
+/// factor's variables to follow is in the clique that the factor belongs to.
 void FluidRelinearization::compareThoseThatFollowed(std::span<const int> solved) {
   for (const int clique : solved)
     for (const FactorId f : tree_[clique].factors) {
@@ -90,7 +90,7 @@ void FluidRelinearization::compare(FactorId f) {
   if (const double norm = models_.mismatch(f).norm; norm > tolerance_) off_.push_back({f, norm});
 }
 
-/// The variable's factors want new Jacobians; `turn_rad` says how urgently.
+/// Marks a variable whose factors need new Jacobians; `turn_rad` says how urgently.
 void FluidRelinearization::markStale(VariableId v, double turn_rad) {
   double& staleness = staleness_rad_[v.value];
   if (staleness == 0) stale_.push_back(v);
@@ -124,8 +124,8 @@ FluidRelinearization::Corrections FluidRelinearization::correctModels() {
   return corrections_;
 }
 
-/// What the budget does not reach goes to the end of the list. To find that out takes time, too: after some, the rest
-/// is left for the next step.
+/// Corrects residuals as far as the budget reaches; the others go to the end of the list. As finding them takes time,
+/// too, the search ends after kMostPutOff of them.
 void FluidRelinearization::correctResiduals() {
   corrected_.reset(graph_.factorSlots());
   std::vector<OffModel> put_off;
@@ -151,13 +151,13 @@ void FluidRelinearization::correctResiduals() {
   budget_.saveSubstitutions(!off_.empty());
 }
 
-/// Where the budget puts Jacobians off, steps by those that are off too far may overshoot, and corrections of what they
-/// did then grow without bound. The model stays as it was, and with it the problem has a solution.
+/// True for a model that is off too far to be corrected before its Jacobian, which the budget puts off. Such a model
+/// makes steps overshoot, and corrections of that would grow without bound. Left as it is, the problem has a solution.
 bool FluidRelinearization::waitsForJacobians(const OffModel& off) const {
   return budget_.limited() && models_.drift(off.factor) + off.mismatch > kTrustedDrifts * params_.jacobian_drift_sigmas;
 }
 
-/// Spends what it takes to carry a new right-hand side from the model's clique to the root.
+/// Spends the substitutions that carry a new right-hand side from the model's clique to the root.
 bool FluidRelinearization::reachesResidual(FactorId id) {
   if (!budget_.limited()) return true;
   std::int64_t scalars = 0;
@@ -177,7 +177,7 @@ void FluidRelinearization::clear() {
   stale_.clear();
 }
 
-/// The variables of the factors whose Jacobians drifted become stale.
+/// Marks the variables of factors whose Jacobians drifted as stale.
 void FluidRelinearization::markDrifted() {
   for (const OffModel& off : off_) {
     if (models_.drift(off.factor) + off.mismatch <= params_.jacobian_drift_sigmas) continue;
@@ -187,7 +187,7 @@ void FluidRelinearization::markDrifted() {
   }
 }
 
-/// The budget bounds this; what an update leaves of it is saved while the worst variable costs more.
+/// Relinearizes stale variables within the budget. What is left of it is saved while the worst variable costs more.
 void FluidRelinearization::relinearizeStale() {
   relinearizeWhatIsFree();
   std::erase_if(stale_, [&](VariableId v) {
@@ -200,15 +200,15 @@ void FluidRelinearization::relinearizeStale() {
   budget_.save(reach == Reach::kBeyondBudget);
 }
 
-/// Stale variables whose cliques are eliminated anew in any case.
+/// Relinearizes stale variables whose cliques are eliminated anew in any case.
 void FluidRelinearization::relinearizeWhatIsFree() {
   for (const int c : work_.removed())
     for (const VariableId v : tree_[c].frontalVariables())
       if (isStale(v) && costOfRelinearizing(v).scalars == 0) relinearize(v);
 }
 
-/// The worst first, as far as the allowances reach: one for those so far off that the solution suffers, one for the
-/// others, which can wait.
+/// Relinearizes the worst first, as far as the allowances reach. Variables so far off that the solution suffers have
+/// one allowance; the others, which can wait, have another.
 FluidRelinearization::Reach FluidRelinearization::relinearizeWorst() {
   const auto worse = [&](VariableId a, VariableId b) {
     const double turn_a = staleness_rad_[a.value], turn_b = staleness_rad_[b.value];
@@ -229,8 +229,8 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWorst() {
   return reach;
 }
 
-/// Looks at a few variables per step, in turn: a closure may leave thousands of them turned by so little that each
-/// harms next to nothing, but not all together. They share the way to the root, so that they are dear one by one only.
+/// Relinearizes a few variables per step, in turn, that turned little. A closure may leave thousands of these: each
+/// harms next to nothing, but all together do. They share the way to the root, so they are expensive only one by one.
 void FluidRelinearization::relinearizeAtRest() {
   rest_flops_left_ = std::min(rest_flops_left_ + params_.rest_flops, params_.polish_flops);
   const int slots = static_cast<int>(graph_.slots());
@@ -243,8 +243,8 @@ void FluidRelinearization::relinearizeAtRest() {
   }
 }
 
-/// The variable and, as new Jacobians of a part of a stiff region bias the rest of it, the connected ones that turned
-/// with it.
+/// Relinearizes a variable and the connected ones that turned with it: new Jacobians of only a part of a stiff region
+/// bias the rest.
 FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId worst, double worst_turn_rad,
                                                                     double& flops_left) {
   const double turn_rad = kTurnedWithShare * worst_turn_rad;
@@ -272,7 +272,7 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v
   return Reach::kWithin;
 }
 
-/// Of the cliques that are eliminated anew for the variable beyond those that are in any case.
+/// Cost of the cliques that are eliminated anew only for the variable.
 FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(VariableId v) {
   counted_.reset(tree_.slots());
   EliminationCost cost;
@@ -287,7 +287,7 @@ FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(
   return cost;
 }
 
-/// The variable's factors get their Jacobians when the linearization points of all variables have moved.
+/// Moves the variable's linearization point. Its factors get new Jacobians when those of all variables have moved.
 void FluidRelinearization::relinearize(VariableId v) {
   states_.moveLinearizationPoint(v);
   staleness_rad_[v.value] = 0;
@@ -299,7 +299,7 @@ void FluidRelinearization::relinearize(VariableId v) {
   }
 }
 
-/// The model's new residual changes the right-hand side of its clique by J^T r.
+/// Corrects a model's residual r, which changes the right-hand side of its clique by J^T r.
 void FluidRelinearization::correctResidual(FactorId id) {
   const auto mismatch = models_.mismatch(id);
   models_.correctResidual(id, mismatch);

@@ -13,14 +13,14 @@ namespace motorcade {
 
 /// Fluid relinearization: finds the linear models that are off after a step, and corrects them in the next one.
 ///
-/// Residuals are told from Jacobians. Where a residual is off, its right-hand side is corrected, which costs a
-/// substitution. Where variables have turned since their Jacobians were taken, these are taken anew, which costs an
-/// elimination of the cliques above: the worst first, as far as the allowances and the budget reach.
+/// Residuals and Jacobians are corrected apart. Where a residual is off, its right-hand side is corrected, which costs
+/// a substitution. Where variables have turned since their Jacobians were taken, these are taken anew, which costs an
+/// elimination of the cliques above. The worst come first, as far as the allowances and the budget reach.
 class FluidRelinearization {
  public:
   /// Zero tolerances are exact.
   struct Params {
-    /// Of a linear model, over the root mean square of the residuals.
+    /// Mismatch of a linear model, over the root mean square of the residuals.
     double mismatch_tolerance = 0.05;
     double compared_share = 0.25;  // of it, as a bound for one variable: below, its factors need no look
     /// Summed mismatch of a factor at which its variables are relinearized.
@@ -29,8 +29,8 @@ class FluidRelinearization {
     double relinearize_rad = 0.05, leisurely_rad = 0.005;
     double urgent_flops = 4e7;  // allowance per step for relinearization as soon as possible
     double polish_flops = 2e6;  // and at leisure
-    /// Where that is limited: share of the turn at leisure at which a variable at rest is relinearized, too, and what a
-    /// step adds to the allowance for that.
+    /// Share of the leisurely turn at which a variable at rest is relinearized, too, and what a step adds to the
+    /// allowance for that. Only for a limited allowance.
     double rest_share = 0.2, rest_flops = 4e3;
   };
   struct Corrections {
@@ -43,15 +43,15 @@ class FluidRelinearization {
 
   /// Finds the models that are off after a step.
   void compareModels(const BackSubstitution::Result& step);
-  /// Neither the new factors nor those that wait are in the tree yet.
+  /// Begins a step. Neither the new factors nor those that wait are in the tree yet.
   void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
-  /// Corrects what is off, as far as the budget reaches, and marks the work that this is.
+  /// Corrects the models that are off, as far as the budget reaches, and marks the cliques' work.
   Corrections correctModels();
-  /// Everything has been relinearized.
+  /// Forgets everything, as all has been relinearized.
   void clear();
 
   bool anyModelOff() const { return !off_.empty(); }
-  /// Variables whose relinearization was put off.
+  /// Number of variables whose relinearization was put off.
   std::size_t deferred() const { return stale_.size(); }
 
  private:
@@ -59,7 +59,7 @@ class FluidRelinearization {
     FactorId factor;
     double mismatch = 0;
   };
-  /// How far the budget and the allowances reach.
+  /// Outcome of a relinearization under the allowances and the budget.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
   struct EliminationCost {
     std::int64_t scalars = 0;

@@ -11,13 +11,13 @@
 namespace motorcade {
 namespace {
 
-/// So many new variables in one update have no order that could be kept: at the end of the old one they may all be
-/// neighbors of one that is eliminated before them, at the cost of a dense system.
+/// Most new variables of an update that keep the order. At the end of the old order, more of them might all be
+/// neighbors of one variable that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
 
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
-/// Of a factor over these variables, which is left out.
+/// Problem of a factor over these variables, which is left out.
 SolverProblem refusal(SolverProblem::Kind kind, VariableId because_of, std::span<const VariableId> variables) {
   SolverProblem problem{.kind = kind, .variable = because_of};
   std::ranges::copy_if(variables, std::back_inserter(problem.others), [&](VariableId v) { return v != because_of; });

@@ -20,16 +20,16 @@
 
 namespace motorcade {
 
-/// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012): keeps R of the linearized
-/// problem as a tree of cliques; an update eliminates anew only the cliques from where new factors enter up to the
+/// Incremental square-root smoothing (iSAM, Kaess et al. 2008, on the tree of iSAM2, 2012). Keeps R of the linearized
+/// problem as a tree of cliques. An update eliminates anew only the cliques from where new factors enter up to the
 /// root.
 ///
-/// Add variables and factors, then `update`. `retire` and `drop` want no additions waiting.
+/// Add variables and factors, then `update`. Call `retire` and `drop` with no additions waiting.
 class IncrementalSolver {
  public:
   enum class Policy {
-    /// Keeps the order and the linear models between batch steps, every `batch_every_updates` (iSAM), and where very
-    /// many variables come at once.
+    /// Keeps the order and the linear models between batch steps. These come every `batch_every_updates` (iSAM), and
+    /// where very many variables come at once.
     kEveryN,
     kFluid,  // corrects the models that are off and reorders what an update touches
   };
@@ -37,10 +37,10 @@ class IncrementalSolver {
     Policy policy = Policy::kFluid;
     int batch_every_updates = 50;
     FluidRelinearization::Params relinearization;  // of kFluid
-    /// Steps below that, in conditional standard deviations over the root mean square of the residuals, do not spread.
+    /// Steps below this, in conditional standard deviations over the root mean square of the residuals, do not spread.
     double substitution_tolerance = 0.05;
-    /// Scalars substituted in a step beyond those of the cliques that it eliminates or corrects; what is below waits
-    /// for the next steps, with estimates that are a little older. 0: no limit.
+    /// Scalars substituted in a step beyond those of the cliques that it eliminates or corrects. Cliques below wait for
+    /// the next steps, with estimates that are a little older. 0: no limit.
     std::int64_t spread_scalars = 0;
     int iterations_per_update = 2;  // Gauss-Newton steps at most, while models are off
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
@@ -55,7 +55,7 @@ class IncrementalSolver {
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
     double largest_change = 0;   // of any x, m or rad
-    /// Factors that the budget put off, and a bound of what they can take off chi2: their own.
+    /// Number of factors that the budget put off, and a bound of what they can take off chi2: their own.
     int waiting_factors = 0;
     double waiting_chi2 = 0;
     std::int64_t waiting_scalars = 0;  // whose substitution was put off
@@ -66,42 +66,42 @@ class IncrementalSolver {
   IncrementalSolver& operator=(const IncrementalSolver&) = delete;
 
   VariableId addVariable(const Value& initial);
-  /// A provisional factor is removed before the models of the next update are corrected: whether its own is off does
-  /// not matter.
+  /// Provisional factors are removed before the next update corrects models, so it does not matter whether theirs are
+  /// off.
   enum class Lifetime : char { kLasting, kProvisional };
-  /// Empty when the factor cannot be used; the next report says why.
+  /// Adds a factor; empty when it cannot be used, and then the next report says why.
   std::optional<FactorId> addFactor(AnyFactor factor, Lifetime lifetime = Lifetime::kLasting);
   void removeFactor(FactorId id);
-  /// Whether an update corrects the models that were found to be off, or leaves that to the next one: where factors are
-  /// about to be replaced, their correction would be lost.
+  /// Time at which models found to be off are corrected: in this update, or in the next one. Where factors are about to
+  /// be replaced, their correction now would be lost.
   enum class Correction { kNow, kLater };
-  /// The report lasts until the next change of the solver.
+  /// Updates the solution. The report lasts until the next change of the solver.
   const Report& update(Correction correction = Correction::kNow);
 
-  /// Marginalizes variables: what they know stays as a factor on their neighbors, and the solution does not change.
+  /// Marginalizes variables: their information stays as a factor on their neighbors, and the solution does not change.
   void retire(std::span<const VariableId> variables);
-  /// Removes variables with all that was measured of them.
+  /// Removes variables and all measurements of them.
   const Report& drop(std::span<const VariableId> variables);
   /// Relinearizes everything until no x changes by more than `tolerance`.
   const Report& converge(int max_iterations, double tolerance);
 
   Value estimate(VariableId v) const { return graph_.states().estimate(v); }
   SE3 pose(VariableId v) const { return std::get<SE3>(estimate(v)); }
-  /// Joint covariance of right perturbations of the variables, stacked, and of J times them. Empty when the system is
-  /// singular there. See motorcade::jointCovariance.
+  /// Joint covariance of the stacked right perturbations of the variables, and of J times them. Empty when the system
+  /// is singular there. See motorcade::jointCovariance.
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables) const;
   std::optional<Eigen::MatrixXd> jointCovariance(std::span<const VariableId> variables,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& J) const;
 
-  /// In the counters, `relinearizations` are updates that relinearized anything; `reorderings` and `batch_solves`
-  /// concern the whole system.
+  /// Counts of the work so far. `relinearizations` are updates that relinearized anything; `reorderings` and
+  /// `batch_solves` concern the whole system.
   SolverCounters counters() const;
   const FactorGraph& graph() const { return graph_; }
   const EliminationTree& tree() const { return tree_; }
   std::size_t heldBytes() const { return graph_.models().heldBytes() + eliminator_.heldBytes(); }
 
  private:
-  /// What the tree does not hold yet.
+  /// Changes of the graph that the tree does not hold yet.
   struct Changes {
     std::vector<VariableId> touched = {};  // by factors that came or went
     std::vector<VariableId> variables = {};
@@ -110,7 +110,7 @@ class IncrementalSolver {
     bool empty() const { return touched.empty() && variables.empty() && factors.empty(); }
     void clear() { touched.clear(), variables.clear(), factors.clear(); }
   };
-  /// What a step did.
+  /// Work and results of a step.
   struct Step {
     FluidRelinearization::Corrections corrections;
     BackSubstitution::Result solved;
@@ -120,9 +120,9 @@ class IncrementalSolver {
 
   void beginReport();
   void endReport();
-  /// The one place where a step enters the report.
+  /// Enters a step into the report, the only place that does.
   void note(const Step& step);
-  /// One Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the
+  /// Takes one Gauss-Newton step: folds in what is new, corrects the models that are off, solves for x, and lets the
   /// estimates follow.
   Step step(const Changes& changes, Correction correction);
   /// Relinearizes and reorders everything.

@@ -47,8 +47,8 @@ void turnToWorldAxes(const Value& value, RowMajorMatrixXd& rows) {
   }
 }
 
-/// The columns of J^T in the rows of the path, which hold steps in the world's axes, and zeros that pad the rows. J
-/// acts on right perturbations.
+/// Columns of J^T in the rows of the path, which hold steps in the world's axes, and zeros that pad the rows. J acts on
+/// right perturbations.
 RowMajorMatrixXd transposed(const FactorGraph& graph, const Path& path, std::span<const VariableId> variables,
                             const Eigen::Ref<const Eigen::MatrixXd>& J) {
   RowMajorMatrixXd columns = RowMajorMatrixXd::Zero(path.rows, padded(static_cast<int>(J.rows())));
@@ -62,7 +62,7 @@ RowMajorMatrixXd transposed(const FactorGraph& graph, const Path& path, std::spa
   return columns;
 }
 
-/// The rows of the path that a clique's scalars have, in the order of its factor.
+/// Finds the rows of the path for a clique's scalars, in the order of its factor.
 void findRows(const FactorGraph& graph, const Path& path, const Clique& clique, std::vector<int>& rows) {
   rows.clear();
   for (const VariableId v : clique.variables)
@@ -82,7 +82,7 @@ Panel lowerRight(const Panel& panel, int from) {
           .columns = panel.columns - from};
 }
 
-/// For each column the first row in which it or a column after it is not zero, or the number of rows.
+/// First row for each column in which it or a later column is not zero, or the number of rows.
 std::vector<int> beginsOf(const RowMajorMatrixXd& columns) {
   std::vector<int> begins(columns.cols());
   int earliest = static_cast<int>(columns.rows());
@@ -98,9 +98,9 @@ void copyFours(const double* from, double* to, int count) {
   for (int i = 0; i < count; i += 4) std::copy_n(from + i, 4, to + i);
 }
 
-/// With the information H = L L^T, J H^-1 J^T = Y^T Y, Y = L^-1 J^T. Forward substitution meets only the cliques from
-/// the variables of J up to the root; no back-substitution is needed. `rest` holds J^T, and what is left of it after
-/// the cliques so far. Last columns that begin farther up are left out.
+/// Computes J H^-1 J^T = Y^T Y, Y = L^-1 J^T, from the information H = L L^T. Forward substitution meets only the
+/// cliques from the variables of J up to the root; no back-substitution is needed. `rest` holds J^T, and what is left
+/// of it after the cliques so far. Last columns that begin farther up are left out.
 std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const EliminationTree& tree, const Path& path,
                                                 RowMajorMatrixXd rest) {
   const std::vector<int> begins = beginsOf(rest);

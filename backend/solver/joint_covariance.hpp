@@ -10,7 +10,7 @@
 
 namespace motorcade {
 
-/// Covariance of J x, where x are right perturbations of the variables, stacked, from R. Empty when the system is
+/// Covariance of J x from R, where x are the stacked right perturbations of the variables. Empty when the system is
 /// singular there. Costs as much as the cliques from the variables up to the root, and less where J has few rows and
 /// those of old variables come first.
 std::optional<Eigen::MatrixXd> jointCovariance(const FactorGraph& graph, const EliminationTree& tree,

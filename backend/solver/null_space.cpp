@@ -10,11 +10,11 @@
 namespace motorcade {
 namespace {
 
-/// Steps below that, over the largest, are rounding. A turn of one radian that moves the ends of a graph by many
+/// Steps below this share of the largest are rounding. A turn of one radian that moves the ends of a graph by many
 /// kilometers is not.
 constexpr double kRoundingOfSteps = 1e-8;
-/// A factor constrains a direction when its cost changes by more than that, over what it would change by without
-/// cancellation. Rounding leaves the square of 1e-8 of a Jacobian; an information matrix has been squared already.
+/// A factor constrains a direction when its cost changes by more than this share of the change without cancellation.
+/// Rounding leaves the square of 1e-8 of a Jacobian; an information matrix has been squared already.
 constexpr double kRoundingOfJacobian = 1e-14, kRoundingOfInformation = 1e-10;
 
 using Step = NullSpaceDirection::Step;
@@ -45,7 +45,7 @@ class DirectionSubstitution {
   }
 
  private:
-  /// False when nothing moves there.
+  /// Descends into a clique; false when nothing moves there.
   bool descendInto(const Clique& clique) {
     Eigen::VectorXd separator = Eigen::VectorXd::Zero(clique.separatorSize());
     Eigen::Index at = 0;
@@ -84,7 +84,7 @@ class DirectionSubstitution {
   double largest_ = 0;
 };
 
-/// By how much a factor's cost changes, and by how much it would if nothing canceled.
+/// Change of a factor's cost, and what it would be if nothing canceled.
 struct CostChange {
   double cost = 0, without_cancellation = 0;
 };

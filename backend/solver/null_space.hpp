@@ -12,9 +12,9 @@ struct FrontalScalar {
   int clique = 0, column = 0;
 };
 
-/// A direction of the whole system that (nearly) no factor constrains, which shows as a scalar that was eliminated with
-/// (nearly) no information: that scalar moves by one, those that are eliminated later do not move, and those eliminated
-/// earlier move so that the cost rises least.
+/// Direction of the whole system that (nearly) no factor constrains. It shows as a scalar that was eliminated with
+/// (nearly) no information. That scalar moves by one, those eliminated later do not move, and those eliminated earlier
+/// move so that the cost rises least.
 struct NullSpaceDirection {
   struct Step {
     VariableId variable;
@@ -34,7 +34,7 @@ struct NullSpaceDirection {
 /// before elimination.
 std::vector<FrontalScalar> weakScalars(const EliminationTree& tree, int clique, double ratio);
 
-/// Costs as much as the part of the tree that moves.
+/// Finds the direction of a scalar. Costs as much as the part of the tree that moves.
 NullSpaceDirection nullSpaceDirection(const FactorGraph& graph, const EliminationTree& tree,
                                       const FrontalScalar& scalar);
 

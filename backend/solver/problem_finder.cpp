@@ -13,7 +13,7 @@ using Kind = SolverProblem::Kind;
 using Constraint = NullSpaceDirection::Constraint;
 using Directions = std::vector<const NullSpaceDirection*>;
 
-/// A connected part of the graph has one root.
+/// Number of variables below a root; a connected part of the graph has one root.
 std::int64_t variablesBelow(const EliminationTree& tree, int root) {
   std::int64_t count = 0;
   std::vector<int> open{root};
@@ -26,7 +26,7 @@ std::int64_t variablesBelow(const EliminationTree& tree, int root) {
   return count;
 }
 
-/// A basis of what the columns span with as many zeros as it can have, each of unit length.
+/// Basis of the columns' span with as many zeros as it can have, each of unit length.
 std::vector<SmallVector> sparseBasis(Eigen::MatrixXd columns) {
   constexpr double kRounding = 1e-7;  // of the largest entry: the columns come from weak pivots
   const double largest = columns.cwiseAbs().maxCoeff();
@@ -52,7 +52,7 @@ std::vector<SmallVector> sparseBasis(Eigen::MatrixXd columns) {
   return basis;
 }
 
-/// From a step in the world's axes to the variable's own perturbation, where its Jacobians were taken.
+/// Turns a step in the world's axes into the variable's own perturbation, where its Jacobians were taken.
 SmallVector toOwnAxes(const FactorGraph& graph, VariableId v, SmallVector step) {
   const Value& value = graph.states()[v].linearization_point;
   if (const auto* pose = std::get_if<SE3>(&value)) {
@@ -64,7 +64,7 @@ SmallVector toOwnAxes(const FactorGraph& graph, VariableId v, SmallVector step) 
   return step;
 }
 
-/// The variable that is held in most directions, and of several such the one whose direction comes last.
+/// The variable held in most directions; of several such, the one whose direction comes last.
 VariableId mostHeld(const Directions& directions) {
   const auto times = [&](VariableId v) { return std::ranges::count(directions, v, &NullSpaceDirection::held); };
   VariableId most = directions.front()->held;
@@ -73,7 +73,7 @@ VariableId mostHeld(const Directions& directions) {
   return most;
 }
 
-/// One problem of directions that belong together.
+/// Merges directions that belong together into one problem.
 SolverProblem merged(const FactorGraph& graph, Kind kind, const Directions& directions, std::int64_t part_variables) {
   const VariableId v = mostHeld(directions);
   SolverProblem problem{.kind = kind, .variable = v, .factors = graph.factorsOf(v)};
@@ -100,13 +100,14 @@ Kind kindOf(const NullSpaceDirection& direction) {
   return direction.constraint == Constraint::kWeak ? Kind::kBadlyConditioned : Kind::kUnconstrained;
 }
 
-/// No factor constrains the direction, and more than a variable that has factors of its own moves along it.
+/// True when no factor constrains the direction, and several variables move along it or the one that moves has no
+/// factors.
 bool isJoint(const FactorGraph& graph, const NullSpaceDirection& direction) {
   return direction.constraint == Constraint::kNone &&
          (direction.steps.size() > 1 || graph.factorsOf(direction.held).empty());
 }
 
-/// What is wrong with one connected part.
+/// Problems of one connected part.
 std::vector<SolverProblem> problemsOfPart(const FactorGraph& graph, const std::vector<NullSpaceDirection>& directions,
                                           std::int64_t part_variables) {
   const bool whole_part_moves = std::ranges::any_of(directions, [&](const NullSpaceDirection& d) {

@@ -21,12 +21,12 @@ void ProblemReporter::append(const FactorGraph& graph, const EliminationTree& tr
   reported_ = std::move(present);
 }
 
-/// Of the problem as it was reported, 0 if it was not.
+/// Freedoms of the problem when it was reported, 0 if it was not.
 std::int64_t ProblemReporter::reportedFreedoms(const SolverProblem& problem, const EliminationTree& tree) const {
   std::int64_t most = 0;
   for (const Reported& reported : reported_) {
     if (reported.kind != problem.kind) continue;
-    // Of a part that moves as a whole it may now be another variable that is held.
+    // A part that moves as a whole may be held at another variable now.
     const int clique = tree.cliqueOf(reported.variable);
     const bool same_part = concernsPart(problem.kind) && clique >= 0 &&
                            tree.rootOf(clique) == tree.rootOf(tree.cliqueOf(problem.variable));
@@ -35,7 +35,7 @@ std::int64_t ProblemReporter::reportedFreedoms(const SolverProblem& problem, con
   return most;
 }
 
-/// Nothing weak was eliminated in this update: those problems are gone whose variables were.
+/// Forgets problems whose variable left or has no weak scalar in its clique any more; nothing weak was eliminated here.
 void ProblemReporter::forgetSolved(const FactorGraph& graph, const EliminationTree& tree) {
   std::erase_if(reported_, [&](const Reported& reported) {
     const VariableId v = reported.variable;

@@ -14,10 +14,10 @@ namespace motorcade {
 /// concerned.
 class ProblemReporter {
  public:
-  /// Appends what is wrong since the last call, since when `weakest_pivot` was the weakest (see Eliminator).
+  /// Appends the problems since the last call, since when `weakest_pivot` was the weakest (see Eliminator).
   void append(const FactorGraph& graph, const EliminationTree& tree, double weakest_pivot,
               std::vector<SolverProblem>& problems);
-  /// The id belongs to a new variable.
+  /// Forgets a variable whose id belongs to a new one.
   void forget(VariableId v);
 
  private:

@@ -12,7 +12,7 @@ bool contains(std::span<const VariableId> variables, VariableId v) {
   return std::ranges::find(variables, v) != variables.end();
 }
 
-/// The variables of the factors besides those that leave.
+/// Variables of the factors without those that leave.
 std::vector<VariableId> neighborsOf(const FactorGraph& graph, std::span<const FactorId> factors,
                                     std::span<const VariableId> leaving) {
   std::vector<VariableId> neighbors;
@@ -23,7 +23,7 @@ std::vector<VariableId> neighborsOf(const FactorGraph& graph, std::span<const Fa
   return neighbors;
 }
 
-/// Besides the sorted `others`.
+/// Factors without the sorted `others`.
 std::vector<FactorId> without(const std::vector<FactorId>& others, std::span<const FactorId> factors) {
   std::vector<FactorId> kept;
   std::ranges::copy_if(factors, std::back_inserter(kept),
@@ -31,8 +31,7 @@ std::vector<FactorId> without(const std::vector<FactorId>& others, std::span<con
   return kept;
 }
 
-/// What the eliminated variables knew, stated in the coordinates of `neighbors`, as a prior around their present
-/// estimates.
+/// Prior around the present estimates of `neighbors`, from the eliminated variables' information in their coordinates.
 std::unique_ptr<MarginalFactor> marginalPrior(FactorGraph& graph, const std::vector<VariableId>& neighbors,
                                               Eigen::MatrixXd knowledge) {
   const Eigen::Index n = knowledge.rows() - 1;
@@ -101,7 +100,8 @@ void Retirement::retirePart(const Part& part, std::span<const VariableId> gone) 
                          .renumber = false});
 }
 
-/// What was left on the same variable before: of something that all share, priors would grow without end.
+/// Includes priors that earlier retirements left on the same variable: on one that all share, they would grow without
+/// end.
 void Retirement::includeEarlierPriors(std::span<const VariableId> neighbors, std::vector<FactorId>& factors) {
   if (neighbors.size() != 1) return;
   for (const FactorId f : graph_.factorsOf(neighbors.front())) {

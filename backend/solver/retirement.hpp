@@ -7,22 +7,23 @@
 
 namespace motorcade {
 
-/// How variables leave the solver: marginalized when they are old, dropped when they went wrong. Both want a tree that
-/// holds all variables and factors of the graph.
+/// Removes variables from the solver: marginalized when they are old, dropped when they went wrong. Both need a tree
+/// that holds all variables and factors of the graph.
 class Retirement {
  public:
   Retirement(FactorGraph& graph, EliminationTree& tree, Eliminator& eliminator)
       : graph_(graph), tree_(tree), eliminator_(eliminator) {}
 
-  /// Marginalizes the variables: what they know stays as a factor on their neighbors, and the solution does not change.
+  /// Marginalizes the variables: their information stays as a factor on their neighbors, and the solution does not
+  /// change.
   void marginalize(std::span<const VariableId> variables);
-  /// Removes the variables with all that was measured of them. Returns the cliques that were eliminated anew, up to the
+  /// Removes the variables and all measurements of them. Returns the cliques that were eliminated anew, up to the
   /// roots, whose solution changes; they last until the next call.
   std::span<const int> drop(std::span<const VariableId> variables);
 
  private:
-  /// A connected part of the tree whose cliques hold variables that retire. Any change of order inside it leaves what
-  /// it passes to its parent as it is, so that retiring costs only this part, wherever it lies.
+  /// A connected part of the tree whose cliques hold variables that retire. A change of order inside leaves what it
+  /// passes to its parent unchanged, so retiring costs only this part, wherever it lies.
   struct Part {
     std::vector<int> cliques;
     std::vector<VariableId> boundary;

@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// What is wrong with a graph, found by an update.
+/// A fault of a graph, found by an update.
 struct SolverProblem {
   enum class Kind {
     kUnconstrained,     // no factor constrains the variable along `directions`: its estimate stays where it is
@@ -33,10 +33,10 @@ struct SolverProblem {
   std::int64_t part_variables = 0;    // in the connected part of the graph
 };
 
-/// One word: "missing_prior".
+/// Name of a problem in one word: "missing_prior".
 std::string_view nameOf(SolverProblem::Kind kind);
 
-/// A sentence on what is wrong, what the solver did, and how to fix it, with `name` giving a variable's name. The
+/// Describes in a sentence what is wrong, what the solver did, and how to fix it. `name` returns a variable's name; the
 /// variable may be gone since.
 std::string describe(const SolverProblem& problem, const FactorGraph& graph,
                      const std::function<std::string(VariableId)>& name);

@@ -5,7 +5,7 @@
 namespace motorcade {
 namespace {
 
-/// Scalars: through more a variable is lifted in several steps, between which one can see whether there is time left.
+/// Scalars through which a variable is lifted at once. Between several steps one can see whether there is time left.
 constexpr std::int64_t kLiftedAtOnce = 2000;
 
 }  // namespace
@@ -22,7 +22,7 @@ void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const Variabl
   admitWaiting(fresh);
 }
 
-/// Cheap ones first: they hold the new variables.
+/// Admits new factors, cheap ones first, as they hold the new variables.
 void WaitingFactors::admitFresh(std::vector<FactorId>& fresh) {
   std::vector<std::pair<std::int64_t, FactorId>> by_cost;
   for (const FactorId f : fresh) by_cost.emplace_back(costOf(f), f);
@@ -41,7 +41,7 @@ void WaitingFactors::admitFresh(std::vector<FactorId>& fresh) {
   std::erase_if(fresh, [&](FactorId f) { return puts_off_.contains(f.value); });
 }
 
-/// As far as the allowance reaches; then the first that it does not reach comes nearer.
+/// Admits waiting factors as far as the allowance reaches; then the first one that it does not reach comes nearer.
 void WaitingFactors::admitWaiting(std::vector<FactorId>& fresh) {
   std::erase_if(waiting_, [&](FactorId f) {
     const std::int64_t cost = budget_.limited() ? costOf(f) : 0;
@@ -90,7 +90,7 @@ double WaitingFactors::chi2() const {
   return sum;
 }
 
-/// Scalars of the cliques from the factor's variables up to the root, besides those that are eliminated in any case.
+/// Scalars of the cliques from the factor's variables up to the root, without those that are eliminated in any case.
 std::int64_t WaitingFactors::costOf(FactorId id) {
   counted_.reset(tree_.slots());
   std::int64_t scalars = 0;
@@ -106,7 +106,7 @@ std::int64_t WaitingFactors::costAbove(VariableId v) {
   return scalars;
 }
 
-/// A factor with a residual; others hold its new variables, if it has any.
+/// True for a factor with a residual whose new variables, if it has any, are held by others.
 bool WaitingFactors::canWait(FactorId id) const {
   return graph_.models().isJacobian(id) && std::ranges::all_of(graph_.variablesOf(id), [&](VariableId v) {
            return !isNew(v) || held_.contains(v.value);
@@ -124,7 +124,7 @@ void WaitingFactors::accept(FactorId id, std::int64_t cost) {
   }
 }
 
-/// The one from which it is farthest to the root. At least to the next clique, however large: that is progress.
+/// Lifts the variable that is farthest from the root, at least to the next clique, however large: that is progress.
 bool WaitingFactors::liftVariableOf(FactorId id) {
   const auto variables = graph_.variablesOf(id);
   const VariableId v = *std::ranges::max_element(variables, {}, [&](VariableId u) { return costAbove(u); });

@@ -10,26 +10,26 @@
 namespace motorcade {
 
 /// Spreads loop closures over updates. A factor on a variable of long ago asks for the elimination of all cliques from
-/// there up to the root. Where that is more than the budget, the factor waits in the graph, outside of the tree, while
-/// its variables are lifted through the tree a few cliques per update: R stays that of the same problem, and in the end
-/// the factor asks for little.
+/// there up to the root. If that exceeds the budget, the factor waits in the graph, outside of the tree, while its
+/// variables are lifted a few cliques per update. R stays that of the same problem, and in the end the factor asks for
+/// little.
 class WaitingFactors {
  public:
   WaitingFactors(FactorGraph& graph, const EliminationTree& tree, Eliminator& eliminator, EliminationBudget& budget)
       : graph_(graph), tree_(tree), eliminator_(eliminator), budget_(budget) {}
 
-  /// Leaves those of the new factors in `fresh` that the next elimination takes in, and adds the ones that waited long
-  /// enough. The cliques of the `touched` variables are eliminated anew in any case.
+  /// Leaves those new factors in `fresh` that the next elimination takes in, and adds the ones that waited long enough.
+  /// The cliques of the `touched` variables are eliminated anew in any case.
   void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched);
-  /// Those with one of the variables, which are to leave.
+  /// Takes the waiting factors with one of the variables, which are to leave.
   std::vector<FactorId> takeWith(std::span<const VariableId> variables);
-  /// False when the factor does not wait.
+  /// Removes a factor; false when it does not wait.
   bool remove(FactorId id) { return std::erase(waiting_, id) > 0; }
-  /// The tree has taken in everything.
+  /// Forgets all, as the tree has taken in everything.
   void clear() { waiting_.clear(); }
 
   const std::vector<FactorId>& factors() const { return waiting_; }
-  /// Sum of their squared residuals at the estimates. Where all else has settled, chi2 is not farther above its
+  /// Sum of their squared residuals at the estimates. Where all else has settled, chi2 is at most this far above its
   /// minimum: without these factors it would be there.
   double chi2() const;
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kStampTolerance_s = 5e-3;  // cameras are not that punctual
 
-/// May the span go on from `next`, the neighbor of its end, which would then be `distance_s` from the frame?
+/// True if the span may go on from `next`, the neighbor of its end, which would then be `distance_s` from the frame.
 bool goesOn(const ObjectRecord& next, bool is_neighbor_of_frame, double distance_s, double reach_s) {
   return next.twist.valid() && (is_neighbor_of_frame || distance_s <= reach_s + kStampTolerance_s);
 }

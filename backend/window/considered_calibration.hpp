@@ -10,15 +10,15 @@
 namespace motorcade {
 
 /// Errors of the calibration as *considered* parameters (Schmidt 1966): constant over the drive and known by their
-/// standard deviations alone. They are not estimated, as hardly any shows in a drive, but are part of every covariance,
-/// in which they do not become less with the number of points or frames.
+/// standard deviations alone. They are not estimated, as hardly any shows in a drive. They are part of every
+/// covariance, in which they do not shrink with the number of points or frames.
 class ConsideredCalibration {
  public:
-  /// By column, what each error does when it is as large as its standard deviation: S with the covariance S S'.
+  /// Effects of the errors, one per column, each as large as its standard deviation: S with the covariance S S'.
   using PoseShifts = Eigen::Matrix<double, 6, kCalibrationErrors>;   // right perturbation of a pose or motion
   using PointShifts = Eigen::Matrix<double, 3, kCalibrationErrors>;  // of a place or a velocity
 
-  /// The camera's motion up to a frame, from the last one before that was seen; in frames between, nothing shifts.
+  /// Motion of the camera up to a frame, from the last one before that was seen; in frames between, nothing shifts.
   struct Step {
     double seconds = 0;  // 0: it is not known
     SE3 T_before_now, T_world_now;
@@ -31,19 +31,19 @@ class ConsideredCalibration {
       : camera_(camera), sigmas_(sigmas) {}
 
   const CalibrationSigmas& sigmas() const { return sigmas_; }
-  /// In place of what was known of this frame.
+  /// Sets the step of this frame in place of an earlier one.
   void set(FrameId now, const Step& step);
-  /// No motion from before this frame is asked for any more.
+  /// Forgets the steps before this frame: no motion from before it is asked for any more.
   void forget(FrameId oldest);
 
-  /// The camera's motion from one frame to a later one, T_before_now: what its steps shift adds up, as the errors are
-  /// the same ones.
+  /// Shifts of the camera's motion from one frame to a later one, T_before_now. The shifts of its steps add up, as the
+  /// errors are the same ones.
   PoseShifts ofMotion(FrameId before, FrameId now, const SE3& T_world_now) const;
-  /// The same from the first frame on: of T_world_now.
+  /// Shifts of T_world_now, from the first frame on.
   PoseShifts ofPose(FrameId now, const SE3& T_world_now) const;
-  /// A point seen from the camera [m].
+  /// Shifts of a point seen from the camera [m].
   PointShifts ofPoint(const Eigen::Vector3d& p_cam) const;
-  /// The velocity over ground of such a point, in the camera's axes [m/s]; none where the frame's step is not known.
+  /// Shifts of such a point's velocity over ground, in the camera's axes [m/s]; none where the frame's step is unknown.
   PointShifts ofVelocity(FrameId frame, const Eigen::Vector3d& p_cam, const Eigen::Vector3d& velocity_cam_mps) const;
 
  private:

@@ -8,19 +8,19 @@
 
 namespace motorcade {
 
-/// Poses of camera and objects as they are published. Each frame corrects the whole past; published as it is, a
-/// correction would look like a motion. So a published pose moves by the estimated motion since, and corrections are
-/// added gradually, over `correction_s`; 0 publishes each pose as it is estimated.
+/// Poses of camera and objects as they are published. Each frame corrects the whole past, and a correction published as
+/// it is would look like a motion. So a published pose moves by the estimated motion since, and corrections are added
+/// gradually, over `correction_s`; 0 publishes each pose as it is estimated.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
 
-  /// Poses in the world of an earlier frame as they are estimated now; empty when they are not known any more.
+  /// Present estimates of an earlier frame's poses in the world; empty when they are not known any more.
   struct EarlierPoses {
     std::function<std::optional<SE3>(FrameId)> camera;
     std::function<std::optional<SE3>(TrackId, FrameId)> object;
   };
-  /// Changes the poses of the newest frame. Objects remain where they are seen from the camera.
+  /// Changes the poses of the newest frame. Objects keep their place relative to the camera.
   void operator()(FrameEstimate& online, const EarlierPoses& earlier);
 
  private:

@@ -19,7 +19,8 @@ std::optional<ObjectCovariances> EstimateReader::covariances(const ObjectTrack& 
   return known;
 }
 
-/// Errors of the calibration shift an object that is seen from the camera; that they bend it a little is left out.
+/// Adds the shifts of an object seen from the camera by errors of the calibration. That these also bend it a little is
+/// left out.
 void EstimateReader::consider(ObjectCovariances& known, const ObjectTrack& track, FrameId frame) const {
   const SE3 T_cam_world = window_.cameraPose(frame).inverse();
   const SE3 T_cam_body = T_cam_world * window_.objectPose(track, frame);
@@ -35,7 +36,7 @@ void EstimateReader::consider(ObjectCovariances& known, const ObjectTrack& track
         std::hypot(*known.speed_sigma_mps, (velocity.transpose() * velocity_cam.stableNormalized()).norm());
 }
 
-/// The frame from which the camera's motion up to this one is told.
+/// Frame at which the camera's motion up to this one begins.
 std::optional<FrameId> EstimateReader::startOfMotion(FrameId frame) const {
   const auto after = window_.frames().upper_bound(FrameId{frame.value - motion_frames_});
   if (after == window_.frames().begin()) return std::nullopt;
@@ -44,8 +45,8 @@ std::optional<FrameId> EstimateReader::startOfMotion(FrameId frame) const {
   return before->first;
 }
 
-/// Both at once, as they need the same cliques: of the motion x_b^-1 x_n, with both perturbed, and of x_n. What the
-/// prior of the first pose leaves open, a millimeter, is part of the latter.
+/// Covariances of the motion x_b^-1 x_n, with both perturbed, and of x_n. They are computed at once, as they need the
+/// same cliques. The millimeter that the prior of the first pose leaves open is part of the latter.
 ///   x_b^-1 x_n -> exp(-Ad(T_n_b) xi_b + xi_n)
 CameraCovariances EstimateReader::cameraCovariances(FrameId frame) const {
   const auto before = startOfMotion(frame);

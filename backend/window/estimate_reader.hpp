@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Reads what a window tells of one of its frames. It changes nothing in the window, which must outlive it.
+/// Reads the estimates of a window's frames. It changes nothing in the window, which must outlive it.
 class EstimateReader {
  public:
   explicit EstimateReader(const SmoothingWindow& window, int motion_frames = kCameraCovarianceFrames)
@@ -12,7 +12,7 @@ class EstimateReader {
 
   /// Covariances of a frame, computed from the graph as it is now, with the errors of the calibration.
   FrameCovariances covariances(FrameId frame) const;
-  /// Those of one object, see SmoothingWindow.
+  /// Covariances of one object, see SmoothingWindow.
   std::optional<ObjectCovariances> covariances(const ObjectTrack& track, FrameId frame) const;
   /// Poses and velocities as the graph is now, with the covariances that its records hold.
   FrameEstimate read(FrameId frame) const;

@@ -8,8 +8,8 @@
 
 namespace motorcade {
 
-/// Which frames of a smoothing window have just settled: are so much older than the newest one that hardly anything of
-/// them will change. Each settles once, oldest first, and stays in the window.
+/// Finds the frames of a smoothing window that have just settled: they are so much older than the newest one that
+/// hardly anything of them will change. Each settles once, oldest first, and stays in the window.
 class Settling {
  public:
   explicit Settling(double after_s) : after_s_(after_s) {}

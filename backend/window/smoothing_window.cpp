@@ -32,7 +32,7 @@ std::optional<TrackId> objectOf(const std::map<TrackId, ObjectTrack>& tracks, Va
 
 }  // namespace
 
-/// Points are not kept: records stay for as long as the window.
+/// Adds a record without its points: records stay for as long as the window.
 ObjectRecord& SmoothingWindow::addRecord(ObjectTrack& track, const ObjectObservation& seen) {
   ObjectRecord& record = track.records[seen.frame];
   record.seen = seen;
@@ -89,7 +89,7 @@ std::string SmoothingWindow::nameOf(VariableId v) const {
   return "a variable that is gone";
 }
 
-/// Dropping an object may make another one undetermined, and so goes on until no object has a problem.
+/// Drops objects with problems until none has any: dropping one may make another one undetermined.
 void SmoothingWindow::dropTroubled(const IncrementalSolver::Report& report) {
   std::vector<SolverProblem> found = report.problems;
   while (!found.empty()) {

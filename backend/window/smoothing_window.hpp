@@ -49,23 +49,23 @@ struct FrameCovariances {
   std::map<TrackId, ObjectCovariances> objects;
 };
 
-/// How an object moves over ground in one frame.
+/// Motion of an object over ground in one frame.
 struct ObjectMotionEstimate {
   Eigen::Vector3d velocity_world_mps;
   double yaw_rate_radps = 0;
 };
 
-/// The trajectories of camera and objects over the newest frames, as variables of an incremental solver. A variable
-/// lives from its first observation until its frame leaves the window. The kind of graph that derives from this decides
-/// which factors a frame's measurements become.
+/// Trajectories of camera and objects over the newest frames, as variables of an incremental solver. A variable lives
+/// from its first observation until its frame leaves the window. A derived class, a kind of graph, decides which
+/// factors a frame's measurements become.
 class SmoothingWindow {
  public:
   virtual ~SmoothingWindow() = default;
   SmoothingWindow(const SmoothingWindow&) = delete;
   SmoothingWindow& operator=(const SmoothingWindow&) = delete;
 
-  /// Adds a frame with its objects, and updates the solver. Measurements that are no numbers are left out, and an
-  /// object that the system cannot determine is dropped: it starts anew with its next observation.
+  /// Adds a frame with its objects, and updates the solver. Measurements that are not finite are left out. An object
+  /// that the system cannot determine is dropped and starts anew with its next observation.
   virtual void add(const FrameMeasurements& measurements) = 0;
   /// Sentences about what the last `add` left out or dropped.
   const std::vector<std::string>& problems() const { return problems_; }
@@ -82,14 +82,14 @@ class SmoothingWindow {
   SE3 cameraPose(FrameId frame) const { return solver_.pose(frames_.at(frame).x); }
   virtual SolverCounters counters() const { return solver_.counters(); }
 
-  /// T_world_body as it is estimated now.
+  /// Present estimate of T_world_body.
   virtual SE3 objectPose(const ObjectTrack& track, FrameId frame) const = 0;
   virtual ObjectMotionEstimate objectMotion(const ObjectTrack& track, FrameId frame) const = 0;
-  /// Computes them from the graph as it is now; empty when the frame's pose is not in it.
+  /// Computes covariances from the present graph; empty when the frame's pose is not in it.
   virtual std::optional<ObjectCovariances> objectCovariances(const ObjectTrack& track, FrameId frame) const = 0;
   /// Shifts of camera and objects by errors of the calibration.
   const ConsideredCalibration& calibration() const { return calibration_; }
-  /// Variances grow by this factor, at least 1, as measurements are not independent.
+  /// Factor, at least 1, by which variances grow because measurements are not independent.
   virtual double designEffect() const { return 1; }
 
  protected:
@@ -99,13 +99,13 @@ class SmoothingWindow {
 
   /// The object's record of a frame that the window holds, as yet without variables.
   ObjectRecord& addRecord(ObjectTrack& track, const ObjectObservation& seen);
-  /// Tells what the solver found wrong, and drops the objects concerned.
+  /// Reports what the solver found wrong, and drops the objects concerned.
   void dropTroubled(const IncrementalSolver::Report& report);
   /// Names a variable in sentences about what is wrong.
   virtual std::string nameOf(VariableId v) const;
-  /// The object's variables have gone.
+  /// Called when the object's variables have gone.
   virtual void dropped(TrackId) {}
-  /// The frame and what is older are about to leave.
+  /// Called when the frame and older ones are about to leave.
   virtual void retiring(FrameId) {}
 
   IncrementalSolver solver_;

@@ -57,7 +57,7 @@ class WindowBackend::Publisher {
  private:
   void keepCovariances(FrameId frame) { window_->keep(frame, reader_.covariances(frame)); }
 
-  /// An object that was found by looking back has records from before `frame` that are still without covariances.
+  /// Keeps covariances of records before `frame` that still have none, of an object that was found by looking back.
   void keepLookedBack(FrameId frame) {
     for (const auto& [id, track] : window_->tracks()) {
       for (auto it = track.records.find(frame); it != track.records.end() && it != track.records.begin();) {

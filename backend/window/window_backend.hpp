@@ -10,8 +10,8 @@ namespace motorcade {
 
 class SmoothingWindow;
 
-/// Publishes what a smoothing window tells: the newest frame at once, settled frames as they are, and final ones when
-/// they leave the window.
+/// Publishes the estimates of a smoothing window: the newest frame at once, settled frames as they are, and final ones
+/// when they leave the window.
 class WindowBackend : public Backend {
  public:
   WindowBackend(std::unique_ptr<SmoothingWindow> window, const WindowParams& params);

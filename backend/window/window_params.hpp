@@ -19,8 +19,8 @@ struct WindowParams {
   bool compute_covariances = true;
   int motion_frames = kCameraCovarianceFrames;  // over which the covariance of the camera's motion is told
   CalibrationSigmas calibration{};              // is considered in covariances
-  /// A correction of an object's whole track would look like motion when published online. So the published pose moves
-  /// as the object does, and corrections come in over this time; 0 publishes each pose as it is estimated.
+  /// Time over which corrections of an object's track enter its published pose; 0 publishes each pose as it is
+  /// estimated. The pose moves as the object does, as a sudden correction would look like motion.
   double online_correction_s = 0.5;
 
   bool use_smoothness = true;  // factors that say how vehicles move

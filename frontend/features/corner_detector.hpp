@@ -15,7 +15,7 @@ class CornerDetector {
  public:
   struct Params {
     int max_corners = 1500;
-    /// In gray levels per pixel: root of the smaller eigenvalue, a mean over the window of the smoothed image.
+    /// Root of the smaller eigenvalue in gray levels per pixel, a mean over the window of the smoothed image.
     double min_score = 1.5;
   };
   static constexpr int kCell_px = 24;        // side of a cell
@@ -23,8 +23,8 @@ class CornerDetector {
 
   explicit CornerDetector(const Params& params);
 
-  /// Corners ordered by cell, row by row, the strongest of a cell first. Their coordinates are whole pixels. The least
-  /// score is `score_share` of the parameter. None lies on a pixel that is ignored.
+  /// Returns corners ordered by cell, row by row, the strongest of a cell first, at whole pixels. The least score is
+  /// `score_share` of the parameter. No corner lies on an ignored pixel.
   std::vector<Corner> operator()(const Image& image, double score_share = 1, const PixelMask* ignored = nullptr) const;
 
  private:

@@ -9,8 +9,8 @@
 namespace motorcade {
 namespace {
 
-/// Share of the least score that suffices in an image of this grain. Blur takes noise as it takes contrast, so that
-/// fainter corners are as good; without them, a blur over 9 px leaves too few.
+/// Share of the least score that suffices in an image of this grain. Blur takes noise as it takes contrast, so fainter
+/// corners are as good. Without them, a blur over 9 px leaves too few.
 double scoreShare(float grain_gray) {
   constexpr float kBlurredGrain = 0.4F;
   return grain_gray < kBlurredGrain ? 1.0 / 3 : 1;

@@ -12,8 +12,8 @@ namespace motorcade {
 
 enum class DetectorKind { kCorners, kSift };
 
-/// Turns a stereo pair into what stereo matching and optical flow both need: pyramids and points worth following.
-/// A rejected pair gives features without images and corners. Stateless but for its buffers; safe to call from several
+/// Computes from a stereo pair what stereo matching and optical flow both need: pyramids and points worth following. A
+/// rejected pair gives features without images and corners. Stateless but for its buffers; safe to call from several
 /// threads.
 class FeaturePreparation {
  public:

@@ -7,7 +7,7 @@
 #include "frontend/features/sift_module.hpp"
 #include "frontend/messages.hpp"
 
-/// The paper's own front-end: SIFT points matched by their descriptors. An option; about 115 ms per image.
+/// The paper's own front-end: SIFT points matched by their descriptors. Optional; takes about 115 ms per image.
 namespace motorcade {
 
 inline constexpr double kSiftSigma_px = 0.4;  // of a point's position and of the disparity of a match
@@ -18,7 +18,7 @@ struct SiftPoints {
 };
 
 /// Detects and describes SIFT points (Lowe 2004). Stateless; safe to call from several threads. OpenCV does it, in a
-/// module that the constructor loads where it is not linked in; it throws where there is none.
+/// module that the constructor loads where it is not linked in. The constructor throws where there is no module.
 class SiftDetector {
  public:
   struct Params {
@@ -38,8 +38,8 @@ struct SiftSearchRegion {
   double max_dv_px = 0;
 };
 
-/// For each point of `from` the index in `to` of its mutual nearest descriptor within the region, -1 when there is
-/// none. `max_ratio` bounds the ratio of the nearest to the second nearest distance.
+/// Matches descriptors: for each point of `from`, the index in `to` of its mutual nearest descriptor in the region, or
+/// -1. `max_ratio` bounds the ratio of the nearest to the second nearest distance.
 std::vector<int> matchSift(const std::vector<Corner>& from, const std::vector<SiftDescriptor>& from_descriptors,
                            const std::vector<Corner>& to, const std::vector<SiftDescriptor>& to_descriptors,
                            const SiftSearchRegion& region, double max_ratio);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-/// What the module `sift.so` (core/module.hpp) has: OpenCV's SIFT. The number in the function's name counts up with
-/// whatever changes in this file, so that a module of another version is refused.
+/// Interface of the module `sift.so` (core/module.hpp): OpenCV's SIFT. The number in the function's name counts up with
+/// every change in this file, so that a module of another version is refused.
 namespace motorcade {
 
 struct SiftImage {
@@ -23,7 +23,7 @@ struct SiftKeypoint {
 
 inline constexpr char kSiftModule[] = "sift", kSiftFunction[] = "motorcade_sift_1";
 
-/// Appends what SIFT finds in an image, each point once. Where it fails, `problem` says why.
+/// Appends the points that SIFT finds in an image, each once. Where it fails, `problem` says why.
 extern "C" void motorcade_sift_1(const SiftImage& image, int max_points, std::vector<SiftKeypoint>& keypoints,
                                  std::string& problem) noexcept;
 

@@ -10,8 +10,8 @@
 
 namespace motorcade {
 
-/// Factors H = L D L' a small positive definite matrix, of which only the lower triangle is read. All loops have a
-/// fixed length and are unrolled.
+/// Factors H = L D L' of a small positive definite matrix; only the lower triangle is read. All loops have a fixed
+/// length and are unrolled.
 template <int N>
 class Cholesky {
  public:
@@ -41,7 +41,7 @@ class Cholesky {
     }
   }
 
-  /// False for a matrix that is not positive definite. Nothing below may be called then.
+  /// True for a positive definite matrix. Nothing below may be called for another one.
   bool positive() const { return positive_; }
 
   Vector solve(Vector b) const {
@@ -63,7 +63,7 @@ class Cholesky {
  private:
   static constexpr int kLanes = static_cast<int>(kDoubleLanes), kParts = (N + kLanes - 1) / kLanes;
 
-  /// Row of several right sides.
+  /// Row of several right-hand sides.
   struct Row {
     std::array<Doubles, kParts> parts;
     Row& operator*=(double factor) {

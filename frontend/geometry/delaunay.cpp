@@ -45,7 +45,7 @@ class EdgeRings {
     int origin, next, previous;
   };
 
-  /// Of a triangulation of so many points: three edges for each, some of which are removed again.
+  /// Reserves edges for so many points: a triangulation has three per point, and some more are removed again.
   void reserve(std::size_t points) { edges_.reserve(8 * points); }
   int make(int from, int to) {
     const int e = size();
@@ -53,7 +53,7 @@ class EdgeRings {
     edges_.push_back({to, e + 1, e + 1});
     return e;
   }
-  /// A new edge from the end of a to the origin of b, with the same face to the left of all three.
+  /// Makes an edge from the end of a to the origin of b, with the same face to the left of all three.
   int connect(int a, int b) {
     const int e = make(destination(a), origin(b));
     splice(leftNext(a), e);
@@ -156,8 +156,8 @@ class Triangulator {
     }
   }
 
-  /// The next edge upwards on the left of the seam (or on its right), once the edges that a better triangle replaces
-  /// are removed.
+  /// Returns the next edge upwards on the left of the seam (or on its right), after removing the edges that a better
+  /// triangle replaces.
   int clearedLeft(int base) {
     int e = edges_.next(base ^ 1);
     while (rightOf(edges_.destination(e), base) &&
@@ -208,7 +208,7 @@ Vertices mergeDuplicates(std::span<const Eigen::Vector2d> points_px, std::vector
   return vertices;
 }
 
-/// The three vertices with the smallest first, in their cyclic order.
+/// Rotates the three vertices so that the smallest comes first.
 std::array<int, 3> smallestFirst(std::array<int, 3> t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;

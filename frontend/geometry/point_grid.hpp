@@ -12,7 +12,7 @@ class PointGrid {
  public:
   static constexpr int kCell_px = 32;
 
-  /// `position_px(item)` gives the position of an item.
+  /// `position_px(item)` returns the position of an item.
   template <class Items, class Position>
   PointGrid(const Items& items, int width, int height, const Position& position_px)
       : columns_(width / kCell_px + 1),
@@ -45,7 +45,7 @@ class PointGrid {
       for (int i = first; i < end; ++i) f(points_[i]);
     });
   }
-  /// Half the side of a square around any point of the image that holds all points.
+  /// Half the side of a square that holds all points, around any point of the image.
   float extent_px() const { return kCell_px * static_cast<float>(std::max(columns_, rows_)); }
 
  private:

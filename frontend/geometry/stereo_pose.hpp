@@ -12,7 +12,7 @@
 
 namespace motorcade {
 
-/// A point known in a rigid reference frame `ref` (the previous camera or a body) and seen by the stereo camera now.
+/// A point in a rigid reference frame `ref` (the previous camera or a body), seen by the stereo camera now.
 struct PoseObservation {
   Eigen::Vector3d p_ref;
   Eigen::Matrix3d covariance_ref;  // of p_ref [m^2]
@@ -25,8 +25,8 @@ class PoseObservations {
  public:
   explicit PoseObservations(std::span<const PoseObservation> observations);
 
-  /// Four observations. Copies of the first one fill a block that has fewer. Sources compiled for any processor would
-  /// align `Doubles` less than the kernels do.
+  /// Four observations. Copies of the first one fill a block that has fewer. The alignment is stated because sources
+  /// compiled for any processor would align `Doubles` less than the kernels do.
   struct alignas(sizeof(Doubles)) Block {
     Doubles3 p_ref;
     SymmetricDoubles3x3 covariance_ref;
@@ -72,12 +72,13 @@ std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservation
 /// Whitened squared residuals of the observations under a pose (3 degrees of freedom); infinite behind the camera.
 std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref);
 
-/// How to score a pose: each observation counts by its weight times its squared residual, at most `max_chi2`.
+/// Weights and bound of a pose's score. Each observation counts by its weight times its squared residual, at most
+/// `max_chi2`.
 struct PoseScoring {
   std::span<const double> weights;  // one per observation, none negative
   double max_chi2;
 };
-/// The sum of what the observations count, the smaller the better (MSAC); from `bound` on it may be any larger one.
+/// Sum over the observations, the smaller the better (MSAC); from `bound` on it may be incomplete.
 double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
                  const PoseScoring& scoring, double bound);
 

@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// How the stereo camera sees four points, each known in a reference frame of its own.
+/// Stereo views of four points, each known in its own reference frame.
 struct StereoViews {
   Doubles3 uvd_px;
   Doubles3x3 J;   // d (u, v, d) / d p_ref [px/m]

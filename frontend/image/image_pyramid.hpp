@@ -8,7 +8,7 @@ namespace motorcade {
 /// An odd last row or column is dropped.
 Image halved(const Image& image, ImagePool& pool);
 
-/// The image itself and its halves, quarters, ...; fewer than `levels` when the next one would be smaller than
+/// Returns the image itself and its halves, quarters, ...; fewer than `levels` when the next one would be smaller than
 /// `kMinPyramidSide_px`.
 ImagePyramid buildPyramid(const Image& image, int levels, ImagePool& pool);
 

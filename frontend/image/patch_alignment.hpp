@@ -7,11 +7,11 @@
 #include "frontend/image/patch_template.hpp"
 #include "frontend/messages.hpp"
 
-/// Alignment of small square patches to a fraction of a pixel, whatever their gain and bias: the kernel of flow and
-/// stereo. Up to half of a patch may lie outside its image, whose border pixels are then repeated.
+/// Aligns small square patches to a fraction of a pixel, whatever their gain and bias: the kernel of flow and stereo.
+/// Up to half of a patch may lie outside its image, whose border pixels are then repeated.
 namespace motorcade {
 
-/// Least standard deviation of an alignment: it stands for errors that the residual does not show.
+/// Least standard deviation of an alignment. It stands for errors that the residual does not show.
 inline constexpr double kPatchSigmaFloor_px = 0.12;
 
 struct PatchParams {
@@ -43,8 +43,8 @@ struct DisparityParams {
 };
 
 /// Disparity of the left point (u, v), which may lie between pixels. A whole-pixel search around the prediction by sums
-/// of absolute differences comes first, then 1-D Gauss-Newton on the intensities of both patches, which follows the
-/// slope of the surface (a parabola through the sums would pull to whole pixels). Empty when the patch leaves an image,
+/// of absolute differences comes first, then 1-D Gauss-Newton on the intensities of both patches. It follows the slope
+/// of the surface; a parabola through the sums would pull to whole pixels. Empty when the patch leaves an image,
 /// nothing is similar enough, the disparity is not positive or its predicted sigma is too large.
 std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
                                            double predicted_disparity_px, const DisparityParams& params = {});

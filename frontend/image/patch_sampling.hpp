@@ -9,7 +9,7 @@
 #include "core/image.hpp"
 #include "frontend/image/word_lanes.hpp"
 
-/// Samples of an image between its pixels, a row of sixteen at a time, in integers of 1/64 gray level.
+/// Samples an image between its pixels, a row of sixteen at a time, in integers of 1/64 gray level.
 namespace motorcade {
 
 inline constexpr int kSampleBits = 6, kSampleLevels = 1 << kSampleBits;  // of a sample per gray level, and per pixel
@@ -23,7 +23,7 @@ inline bool inside(const Image& image, float u_px, float v_px) {
          v_px <= static_cast<float>(image.height() - 1);
 }
 
-/// Asks for the pixels of a patch around (u, v) to be brought into the cache.
+/// Prefetches the pixels of a patch around (u, v) into the cache.
 inline void prefetchPatch(const Image& image, float u_px, float v_px, int window_px) {
   const int half = window_px / 2 + 1, u = static_cast<int>(u_px), v = static_cast<int>(v_px);
   const int left = std::clamp(u - half, 0, image.width() - 1), right = std::clamp(u + half, 0, image.width() - 1);
@@ -35,13 +35,13 @@ inline void prefetchPatch(const Image& image, float u_px, float v_px, int window
   }
 }
 
-/// Ones inside the window, zeros to its right.
+/// Mask of ones inside the window, zeros to its right.
 inline Words windowMask(int window_px) {
   constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   return kColumns < allWords(window_px);  // minus one: all bits set
 }
 
-/// A column's position in 1/64 px: sampling between columns knows only these.
+/// Position of a column in 1/64 px, the resolution of sampling between columns.
 struct ColumnPosition {
   explicit ColumnPosition(float px) {
     const float position = std::floor(px * kSampleLevels + 0.5F);
@@ -56,7 +56,7 @@ struct ColumnPosition {
   float px_;
 };
 
-/// A row's position in 2^-15 px.
+/// Position of a row in 2^-15 px.
 struct RowPosition {
   explicit RowPosition(float px) : pixel(static_cast<int>(std::floor(px))) {
     fraction = std::min(static_cast<int>((px - static_cast<float>(pixel)) * kRowLevels), kRowLevels - 1);

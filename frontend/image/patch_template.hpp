@@ -14,13 +14,13 @@ namespace motorcade {
 inline constexpr int kPatchWindow_px = 11;  // side of the patches of flow and stereo, odd
 inline constexpr int kMaxPatchWindow_px = 13;
 
-/// How a patch may deform beside its shift: by a small change of scale from frame to frame, or by a slope of the
-/// disparity between left and right image.
+/// Deformation of a patch beside its shift: a small change of scale from frame to frame, or a slope of the disparity
+/// between left and right image.
 enum class PatchDeformation { kScale, kSlope };
 
-/// A patch with what its alignment needs: its appearance a = (I - mean) / |I - mean| and the derivatives D of I with
-/// respect to the parameters (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a.
-/// For the raw intensities J of another image the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior,
+/// A patch prepared for alignment: its appearance a = (I - mean) / |I - mean| and the derivatives D of I with respect
+/// to the parameters (kScale: u, v, log scale; kSlope: u, u per row, u per column), made orthogonal to 1 and a. For the
+/// raw intensities J of another image the Gauss-Newton step is H^-1 sum(D J) / gain with H = sum(D D') + prior,
 /// whatever the gain and bias of J. The planes hold integers that are neither normalized, free of their mean nor
 /// orthogonal: the sums over them are corrected for that.
 struct PatchTemplate {
@@ -43,9 +43,9 @@ struct PatchTemplate {
 
 inline constexpr float kMinTemplateScale = 0.6F;  // eight samples then span less than 15 px (`SampleColumns`)
 
-/// Empty when the patch lacks the texture that its shift needs, or when the point lies outside the image. With a
-/// `scale` the template shows the image enlarged by it around the point, as a point first seen from afar looks now.
-/// Empty below kMinTemplateScale.
+/// Makes a template. Empty when the patch lacks the texture that its shift needs, or the point lies outside the image.
+/// `scale` enlarges the image around the point, as a point first seen from afar looks now; empty below
+/// kMinTemplateScale.
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
                                           PatchDeformation deformation, float scale = 1);
 

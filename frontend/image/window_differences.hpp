@@ -12,8 +12,8 @@ struct WindowSize {
   int columns, rows;  // odd
   bool operator==(const WindowSize&) const = default;
 };
-/// The sizes in use, known to the compiler, so that all loops have a fixed length: for images of half size, where a
-/// window shows twice as much of the scene, and for full size.
+/// Window sizes in use, for images of half size, where a window shows twice as much of the scene, and for full size.
+/// The compiler knows them, so that all loops have a fixed length.
 inline constexpr WindowSize kHalfSizeWindow{9, 5}, kFullSizeWindow{11, 7};
 
 inline constexpr int kMaxWindowCosts = 512;
@@ -30,9 +30,9 @@ struct Window {
   }
 };
 
-/// Sums of absolute differences, after the difference of the means (to a whole gray level) is taken out, between a
-/// window and those around (other_u + i, other_v) of another image, i < costs.size() <= kMaxWindowCosts. All windows
-/// lie inside their images. Of the blocks of sixteen costs, those are left out whose bit in `blocks` is not set.
+/// Sums of absolute differences between a window and those around (other_u + i, other_v) of another image, for each i
+/// below costs.size(), at most kMaxWindowCosts. The difference of the means (to a whole gray level) is taken out first.
+/// All windows lie inside their images. Blocks of sixteen costs are left out if their bit in `blocks` is not set.
 void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
                        std::span<std::uint16_t> costs, std::uint32_t blocks = ~std::uint32_t{0});
 

@@ -12,9 +12,9 @@ struct FollowedPatch {
   Eigen::Vector2d from_px, to_px;
 };
 
-/// Ambiguous texture (fences, rails, lane dashes, brick) matches consistently at a wrong position: posts two meters
-/// apart, seen from a car that drives two meters a frame, stand still in the image, as a vehicle at our own speed does.
-/// Such a patch is also found where a point at rest would be, at `at_rest_px` of the image `to`; a vehicle shows
+/// True when the patch is also found where a point at rest would be, at `at_rest_px` of the image `to`. Ambiguous
+/// texture (fences, rails, lane dashes, brick) matches consistently at a wrong position. Posts two meters apart, seen
+/// from a car that drives two meters a frame, stand still in the image like a vehicle at our own speed. A vehicle shows
 /// something else there. `scale` is the size of the patch at rest in `to` over that in `from`.
 bool isAlsoFoundAtRest(const FollowedPatch& patch, const Eigen::Vector2d& at_rest_px, double scale);
 

@@ -12,8 +12,8 @@ namespace motorcade {
 namespace {
 
 constexpr float kNeighbor_px = 10;  // corners this near mostly lie on the same surface and have a similar disparity
-/// Extra search while the camera's motion is unknown, as a share of the disparity before: by so much that of a point
-/// 10 m ahead grows from frame to frame at 13 m/s and ten frames a second.
+/// Extra search while the camera's motion is unknown, as a share of the last disparity. The disparity of a point 10 m
+/// ahead grows so much from frame to frame at 13 m/s and ten frames a second.
 constexpr double kUnknownMotionSearch = 0.15;
 
 std::optional<StereoMatch> refineAround(const Features& features, const FlowObservation& point, double disparity_px,
@@ -22,9 +22,9 @@ std::optional<StereoMatch> refineAround(const Features& features, const FlowObse
                          disparity_px, search);
 }
 
-/// The disparity lies between that of a point at rest and that of a point which moves along with the camera; where
-/// nothing is found there, it may be a vehicle that comes towards the camera or overtakes it, at up to the camera's own
-/// speed.
+/// Looks for the disparity between that of a point at rest and that of a point which moves along with the camera. Where
+/// nothing is found there, it looks farther: the point may be on a vehicle that comes towards the camera or overtakes
+/// it, at up to the camera's own speed.
 std::optional<StereoMatch> expectedDisparity(const Features& features, const FlowObservation& point,
                                              const ExpectedDisparity& expected, bool motion_known, double offset_px) {
   const double middle_px = 0.5 * (expected.at_rest_px + expected.before_px) - offset_px,
@@ -70,8 +70,8 @@ std::vector<std::optional<StereoObservation>> CircularMatching::operator()(const
   return observed;
 }
 
-/// Of a new point: stereo matching found it at the point's corner; where it did not, a matched corner close by tells
-/// where to look.
+/// Disparity of a new point, which stereo matching found at the point's corner. Where it did not, a matched corner
+/// close by tells where to look.
 std::optional<StereoMatch> CircularMatching::firstDisparity(const StereoMatches& stereo, const PointGrid& corners,
                                                             const FlowObservation& point) const {
   if (point.corner >= 0)

@@ -17,7 +17,7 @@ struct StereoObservation {
   Eigen::Vector3f uvd_px, sigma_px;
 };
 
-/// What is known of a point's disparity before it is looked for in the right image.
+/// Disparities that are expected of a point before it is looked for in the right image.
 struct ExpectedDisparity {
   double before_px;   // when the point was last observed
   double at_rest_px;  // now, if the point is at rest
@@ -29,8 +29,8 @@ struct ExpectedDisparities {
   double offset_px = 0;                                    // true minus measured disparity
 };
 
-/// Mutual consistency over two stereo pairs: a point that optical flow followed from L(t-1) to L(t) counts as observed
-/// when it is found in R(t) too, at a disparity that the one between L(t-1) and R(t-1) lets expect. Stateless.
+/// Mutual consistency over two stereo pairs. A point that optical flow followed from L(t-1) to L(t) is kept only if it
+/// is found in R(t) near the disparity predicted from that between L(t-1) and R(t-1). Stateless.
 class CircularMatching {
  public:
   struct Params {
@@ -39,8 +39,8 @@ class CircularMatching {
   };
   CircularMatching(const Params& params, const StereoCamera& camera) : params_(requireValid(params)), camera_(camera) {}
 
-  /// One per flow observation, its disparity corrected by the offset; empty where the point was not found in the right
-  /// image. Both messages are of the same frame.
+  /// Returns one item per flow observation, its disparity corrected by the offset; empty where the point was not found
+  /// in the right image. Both messages are of the same frame.
   std::vector<std::optional<StereoObservation>> operator()(const StereoMatches& stereo, const OpticalFlow& flow,
                                                            const ExpectedDisparities& expected) const;
 

@@ -33,7 +33,7 @@ struct Guesses {
   std::span<const Shift> all() const { return {shifts.data(), count}; }
 };
 
-/// How a point looks, for a quick comparison: 8x8 pixels of each of the two finest levels, their means moved to 128.
+/// Appearance of a point for a quick comparison: 8x8 pixels of each of the two finest levels, their means moved to 128.
 class alignas(64) Signature {
  public:
   static constexpr int kSide = 8, kPixels = 2 * kSide * kSide;
@@ -46,12 +46,12 @@ class alignas(64) Signature {
   std::array<std::uint8_t, kPixels> values_;
 };
 
-/// The corners of an image, to look up where a point of the previous image may have gone. It refers to the features.
+/// Looks up corners of an image where a point of the previous image may have gone. It refers to the features.
 class CornerLookup {
  public:
   explicit CornerLookup(const Features& features);
-  /// Adds the shifts from a point of the previous image to the two corners within the bounds that look most like it and
-  /// differ from it by less than `max_difference` gray levels per pixel.
+  /// Adds shifts from a point of the previous image to the two most similar corners within the bounds. They must differ
+  /// from it by less than `max_difference` gray levels per pixel.
   void addSimilar(const Signature& look, const Eigen::Vector2f& point_px, const ShiftBounds& bounds,
                   double max_difference, Guesses& guesses) const;
 

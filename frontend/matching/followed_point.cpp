@@ -15,7 +15,7 @@ constexpr int kKeyframeFrames = 6;           // since the keyframe
 constexpr double kMaxKeyframeNccLoss = 0.2;  // how much less a point looks like its keyframe than like the last frame
 constexpr double kMaxKeyframeDrift_px = 1;   // from the frame-to-frame position to that of the keyframe's patch
 
-/// The position near a frame-to-frame position at which the keyframe's patch, grown to its present scale, fits best.
+/// Aligns the keyframe's patch, grown to its present scale, near the frame-to-frame position.
 std::optional<AlignedPatch> alignToKeyframe(const Keyframe& keyframe, const AlignedPatch& found, const Image& now) {
   PatchParams params;
   params.min_ncc = found.ncc - kMaxKeyframeNccLoss;

@@ -30,7 +30,7 @@ struct FollowedPoint {
 /// Moves a point to a frame-to-frame position, corrected by alignment to its keyframe where that still fits.
 void moveTo(FollowedPoint& point, const AlignedPatch& found, const Image& now);
 
-/// Asks for what `moveTo` reads of an old image to be brought into the cache.
+/// Prefetches what `moveTo` reads of an old image into the cache.
 void prefetchKeyframe(const FollowedPoint& point);
 
 /// The shifts of all points that were found in this frame.

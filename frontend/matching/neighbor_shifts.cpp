@@ -40,7 +40,7 @@ std::optional<Shift> NeighborShifts::medianAround(const Eigen::Vector2f& from_px
   }
 }
 
-/// Without branches, as which point is nearer than others is unforeseeable.
+/// Finds the nearest three points without branches, as which point is nearer than others is unforeseeable.
 std::array<NeighborShifts::Neighbor, 3> NeighborShifts::nearestThree(const Eigen::Vector2f& from_px,
                                                                      float reach_px) const {
   const auto bits = [](float x) { return std::int64_t{std::bit_cast<std::int32_t>(x)} << kIndexBits; };

@@ -24,12 +24,12 @@ class NeighborShifts {
   /// The points lie in an image of this size.
   NeighborShifts(std::vector<MovedPoint> moved, int width, int height);
 
-  /// Median of the shifts of the three points that were nearest to a position; empty when there are fewer. Of points at
-  /// equal distances the first one is nearer.
+  /// Median of the shifts of the three points nearest to a position; empty when there are fewer. Of points at equal
+  /// distances the first one is nearer.
   std::optional<Shift> medianAround(const Eigen::Vector2f& from_px) const;
 
  private:
-  /// A point as a number, by which points are compared: the bits of its squared distance, then its index.
+  /// A point as a number for comparison: the bits of its squared distance, then its index.
   struct Neighbor {
     std::int64_t key;
     float squared_px() const;

@@ -4,8 +4,8 @@
 
 namespace motorcade {
 
-/// Where points of an image lie already, so that others keep their distance. Each cell of a grid as wide as the
-/// distance remembers the last point in it.
+/// Remembers points of an image, so that others keep their distance. Each cell of a grid as wide as the distance
+/// remembers the last point in it.
 class Occupancy {
  public:
   Occupancy(int width, int height, double distance_px)

@@ -28,8 +28,9 @@ constexpr int kBorder_px = 6;  // of the image, where a patch would repeat the i
 
 constexpr int kMovingLevel = 2;  // of the pyramid, at which an alignment starts from a point's last shift
 
-// An image in which few points are found is of no use (dark, blurred, hidden): they wait for a better one, for a while.
-// From frame to frame two thirds of them are found on clean drives, fewer in poor images; after n intervals an n-th.
+// An image in which few points are found is of no use (dark, blurred, hidden): the points wait for a better one, for a
+// while. Clean drives find two thirds of them from frame to frame, poor images fewer; after n intervals an n-th is
+// found.
 constexpr double kMinFoundShare = 0.6;                    // of the share that is found usually
 constexpr double kUsualShare = 0.75, kUsualMemory = 0.8;  // at first, and how much of it stays from frame to frame
 constexpr double kMinSharpFoundShare = 0.4;               // where the image is sharp: the camera may have turned
@@ -43,10 +44,10 @@ constexpr double kUnevenInterval = 1.5;  // times the interval before: frames ar
 
 constexpr double kSiftMaxFlow_px = 150, kSiftMaxFlowRatio = 0.85;  // as `matchSift` takes them
 
-/// Are frames missing in so many intervals?
+/// True when frames are missing in so many intervals.
 bool isUneven(double intervals) { return intervals > kUnevenInterval || intervals < 1 / kUnevenInterval; }
 
-/// The last shift of a point, after so many times the interval in which it made it.
+/// Last shift of a point, scaled from its own interval to so many of them.
 Shift shiftAfter(const FollowedPoint& point, double intervals) {
   if (!isUneven(intervals)) return point.shift;
   const auto factor = static_cast<float>(intervals);
@@ -61,7 +62,7 @@ std::vector<int> strongestFirst(const std::vector<Corner>& corners) {
   return order;
 }
 
-/// Indices of the points in an order in which much of what one reads of the images is in the cache from those before.
+/// Orders points by place: the pixels of one are then mostly in the cache from those before.
 std::vector<int> byPlace(const std::vector<FollowedPoint>& points, const Image& image) {
   const auto position_px = [](const FollowedPoint& point) {
     return Eigen::Vector2f(point.observation.u_px, point.observation.v_px);
@@ -98,7 +99,7 @@ struct OpticalFlowTracker::State {
   void followDescriptors(const Features& now);
 };
 
-/// Where points are that moved before. Their last shift is the guess.
+/// Finds the points that moved before, with their last shift as the guess.
 std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(const PointFollower& follower,
                                                                                double intervals,
                                                                                std::span<const int> order) const {
@@ -114,7 +115,7 @@ std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(c
   return found;
 }
 
-/// Of the points that moved before; empty where they are too few.
+/// Share of the points that moved before; empty where they are too few.
 std::optional<double> OpticalFlowTracker::State::shareOf(const std::vector<std::optional<AlignedPatch>>& found) const {
   const auto moving = std::ranges::count_if(points, [](const FollowedPoint& p) { return p.observation.age >= 2; });
   const auto seen = std::ranges::count_if(found, [](const auto& f) { return f.has_value(); });
@@ -133,7 +134,7 @@ bool OpticalFlowTracker::State::isOfNoUse(const Features& now, const std::vector
   return share && *share < min_share;
 }
 
-/// Follows the points that are left: new ones, and those that did not keep their velocity.
+/// Follows the remaining points: new ones, and those that did not keep their velocity.
 void OpticalFlowTracker::State::followYoung(const PointFollower& follower, const Features& now,
                                             std::span<const int> order) {
   const Image& image = now.left.levels.front();
@@ -163,7 +164,8 @@ void OpticalFlowTracker::State::removeLost(const Image& now) {
   });
 }
 
-/// The same image again, though the points moved until now: a camera that stands still does not repeat its noise.
+/// True when the image repeats although the points moved until now: a camera that stands still does not repeat its
+/// noise.
 bool OpticalFlowTracker::State::isFrozen(const Features& now) const {
   if (!sameContent(now.left.levels.back(), previous->left.levels.back())) return false;
   const auto moved = std::ranges::count_if(
@@ -171,7 +173,7 @@ bool OpticalFlowTracker::State::isFrozen(const Features& now) const {
   return 2 * moved > std::ssize(points);
 }
 
-/// False, with the points as they were, when the image is of no use.
+/// Follows the points. Returns false, with the points as they were, when the image is of no use.
 bool OpticalFlowTracker::State::follow(const Features& now) {
   const PointFollower follower(previous->left, now.left, params.max_round_trip_px);
   const Image& image = now.left.levels.front();
@@ -194,7 +196,7 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
   return true;
 }
 
-/// Since the points were seen last, in intervals of their last shift.
+/// Time since the points were seen last, in intervals of their last shift.
 double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
   return interval_s > 0 ? secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) / interval_s : 1;
 }

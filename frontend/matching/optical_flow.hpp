@@ -10,9 +10,9 @@ namespace motorcade {
 
 /// Follows scene points through the left images. Each point is aligned from frame to frame, coarse to fine and both
 /// ways, then to its patch in a keyframe, so that errors do not add up from frame to frame. New points start at corners
-/// where points are few. Features with descriptors (SIFT) are followed by those instead. Call in frame order. A
-/// frame that is rejected, or in which hardly any point is found, gives no observations: the points wait for the next
-/// one, for half a second at most. A change of the image size ends all points.
+/// where points are few. Features with descriptors (SIFT) are followed by those instead. Call in frame order. A frame
+/// that is rejected, or in which hardly any point is found, gives no observations: the points wait for the next one,
+/// for half a second at most. A change of the image size ends all points.
 class OpticalFlowTracker {
  public:
   struct Params {

@@ -8,7 +8,7 @@
 namespace motorcade {
 namespace {
 
-/// At the coarse level an alignment only has to be near enough for the next level.
+/// Parameters at the coarse level, where an alignment only has to be near enough for the next level.
 constexpr PatchParams kCoarse{.max_step_px = 0.1, .min_ncc = 0.6};
 constexpr PatchParams kFine;
 

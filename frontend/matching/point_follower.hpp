@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Where a patch of a coarse level fits.
+/// Fit of a patch at a coarse level.
 struct CoarseFit {
   Shift shift;
   float ncc = 0;
@@ -23,19 +23,18 @@ class PointFollower {
 
   int coarsestLevel() const { return static_cast<int>(from_.levels.size()) - 1; }
 
-  /// How a point looks at a level of the pyramid; empty without texture.
+  /// Appearance of a point at a level of the pyramid; empty without texture.
   std::optional<PatchTemplate> patchAt(const FlowObservation& point, int level) const;
 
-  /// Where the point's patch of `level` fits near a guess: at the guess itself without a patch. Empty when it does not
-  /// fit.
+  /// Fits the point's patch of `level` near a guess; without a patch the guess itself fits. Empty when it does not fit.
   std::optional<CoarseFit> fit(const FlowObservation& point, const std::optional<PatchTemplate>& patch,
                                const Shift& guess, int level) const;
 
-  /// Follows the point from a guess, `level` being the coarsest, to full size. Empty when it does not fit, or when the
+  /// Follows the point from a guess to full size, with `level` the coarsest. Empty when it does not fit, or when the
   /// way back does not lead to the point.
   std::optional<AlignedPatch> refine(const FlowObservation& point, const Shift& guess, int level) const;
 
-  /// Both of them.
+  /// Fits the point at `level`, then refines it.
   std::optional<AlignedPatch> follow(const FlowObservation& point, const Shift& guess, int level) const;
 
  private:

@@ -27,7 +27,7 @@ constexpr int kFineReach_px = 3;       // at full size around the result at half
 // nearest descriptor's distance.
 constexpr double kSiftMaxRow_px = 1.5, kSiftMaxStereoRatio = 0.9;
 
-/// The pair in which all disparities are searched: of half size, of full size where there is no other.
+/// The pair in which all disparities are searched: of half size, or of full size where there is no other.
 struct SearchedPair {
   int level;
   DetailedImage left, right;
@@ -104,7 +104,7 @@ std::vector<std::optional<StereoMatch>> matchDescriptors(const Features& feature
   return matches;
 }
 
-/// Those corners that decide on half-occlusion are refined at once.
+/// Drops half-occluded points; the corners that decide on them are refined at once.
 void dropHalfOccluded(StereoMatches& matches) {
   const auto& corners = matches.features->corners;
   const float greatest_px = greatestDisparity_px(matches.of_corner);

@@ -9,10 +9,10 @@
 
 namespace motorcade {
 
-/// Finds the disparity of each corner of the left image, to a whole pixel: a search over all disparities in the images
-/// of half size is checked for uniqueness and from right to left. A search among the pixels around its result follows.
-/// Features with descriptors (SIFT) are matched by those instead. Stateless but for its
-/// buffers; safe to call from several threads.
+/// Finds the disparity of each corner of the left image to a whole pixel. A search over all disparities in the images
+/// of half size is checked for uniqueness and from right to left; a search among the pixels around its result follows.
+/// Features with descriptors (SIFT) are matched by those instead. Stateless but for its buffers; safe to call from
+/// several threads.
 class StereoMatcher {
  public:
   struct Params {
@@ -28,8 +28,8 @@ class StereoMatcher {
   mutable ImagePool pool_;  // itself safe for several threads
 };
 
-/// The match of a corner to a fraction of a pixel. Few are asked for, so that it is found on demand. Empty where there
-/// is none.
+/// The match of a corner to a fraction of a pixel; empty where there is none. It is computed on demand, as few are
+/// asked for.
 std::optional<StereoMatch> refinedMatch(const StereoMatches& matches, std::size_t corner);
 
 std::vector<Parameter> parametersOf(StereoMatcher::Params& params);

@@ -20,7 +20,7 @@ constexpr float kFarMargin_px = 150;     // more than that sideways, for a secon
 constexpr double kMaxNearDifference = 255;  // none: the alignment decides
 constexpr double kMaxFarDifference = 30;    // many corners are far, and most of them are wrong
 
-/// From rest to somewhat more than the shift of the neighbors; anywhere when there are no neighbors.
+/// Bounds from rest to somewhat more than the shift of the neighbors; anywhere when there are no neighbors.
 ShiftBounds boundsAround(const std::optional<Shift>& neighbors, double max_flow_px) {
   const auto reach = static_cast<float>(max_flow_px);
   if (!neighbors) return {-reach, reach, -reach / 2, reach / 2};
@@ -29,7 +29,7 @@ ShiftBounds boundsAround(const std::optional<Shift>& neighbors, double max_flow_
           std::max(dv, 0.0F) + kNearMargin_px};
 }
 
-/// Wider bounds for a point of a vehicle that crosses or overtakes. The road is level, so that it moves sideways.
+/// Wider bounds for a point of a vehicle that crosses or overtakes. They grow sideways only, as the road is level.
 ShiftBounds widened(const ShiftBounds& near) {
   constexpr float kMore_px = kFarMargin_px - kNearMargin_px;
   return {near.min_du_px - kMore_px, near.max_du_px + kMore_px, near.min_dv_px, near.max_dv_px};
@@ -48,7 +48,7 @@ class CoarseTrials {
       if (same(trial.guess, guess)) return trial.fit;
     return (trials_[count_++] = {guess, follower_.fit(point_, patch_, guess, level_)}).fit;
   }
-  /// The best of several; of equal ones the first.
+  /// The best fit of several guesses, of equal ones the first.
   std::optional<CoarseFit> bestAt(const Guesses& guesses) {
     std::optional<CoarseFit> best;
     for (const Shift& guess : guesses.all())

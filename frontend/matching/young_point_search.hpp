@@ -8,7 +8,7 @@
 
 namespace motorcade {
 
-/// Finds points whose own velocity tells nothing (new ones, and those that did not keep theirs) by guesses from their
+/// Finds points whose own velocity tells nothing: new ones, and those that did not keep theirs. Guesses come from their
 /// neighbors and from corners that look like them, first near ones, then far ones. It refers to what it was made with.
 class YoungPointSearch {
  public:
@@ -16,7 +16,7 @@ class YoungPointSearch {
   YoungPointSearch(const PointFollower& follower, const Features& before, const Features& now, NeighborShifts neighbors,
                    double max_flow_px);
 
-  /// Where a point of the frame before is now; empty when it is not found.
+  /// Finds a point of the frame before; empty when it is not found.
   std::optional<AlignedPatch> operator()(const FlowObservation& point) const;
 
  private:

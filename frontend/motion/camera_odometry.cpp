@@ -13,16 +13,16 @@
 namespace motorcade {
 namespace {
 
-/// Beyond it no motion is likely to go on: the camera is taken to have stopped somewhere.
+/// Longest time over which a motion goes on: beyond it the camera is taken to have stopped somewhere.
 constexpr double kMaxPrediction_s = 1.0;
 
-/// Where nothing else was measured for so long, a camera that seems to slide does so.
+/// Time without any other measurement after which a camera that seems to slide does so.
 constexpr double kMaxUnbelieved_s = 5.0;
 
-/// Over more steps than these, pitch and roll do not go on: a car nods and sways about where it is.
+/// Steps beyond which pitch and roll do not go on: a car nods and sways about where it is.
 constexpr double kSteadySteps = 1.5;
 
-/// Forward and turning, as a car drives on.
+/// Motion forward and in yaw alone, as a car drives on.
 SE3 levelMotion(const SE3& motion) {
   const Vector6d twist = motion.log();
   Vector6d level = Vector6d::Zero();
@@ -30,18 +30,18 @@ SE3 levelMotion(const SE3& motion) {
   return SE3::exp(level);
 }
 
-/// Of a point: beyond it there is hardly a digit left in its covariance.
+/// Distance of a point beyond which there is hardly a digit left in its covariance.
 constexpr double kFarthest_m = 1e5;
 
-/// A motion measured by fewer is as good as it can be, but not safe.
+/// Points below which a measured motion is as good as it can be, but not safe.
 constexpr int kFewInliers = 25;
 
 // A motion that the vehicle's sensors contradict is believed when so many points agree on it, and such a share.
 constexpr int kSureInliers = 60;
 constexpr double kSureShare = 0.6;
 
-/// Does the view move as vehicles around the camera would make it? They go along with it, so that it seems to stand, or
-/// move off ahead of it while it stands, so that it seems to go back or aside.
+/// True when the view moves as vehicles around the camera would make it. They go along with it, so that it seems to
+/// stand, or move off while it stands, so that it seems to go back or aside.
 bool mayBeVehicles(const SE3& seen, const SE3& told, double dt_s) {
   constexpr double kStanding_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15, kAlong_mps = 1.5;
   const double seen_m = seen.translation().norm(), told_m = told.translation().norm();
@@ -59,7 +59,7 @@ CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations
           .inliers = std::vector<bool>(observations, false)};
 }
 
-/// Differences of covariances are those of a step but for rounding and what frames share.
+/// Positive part of a difference of covariances, which is that of a step but for rounding and what frames share.
 Matrix6d positivePart(const Matrix6d& difference) {
   constexpr double kLeast = 1e-8;  // of a tenth of a millimeter, or a hundredth of a degree
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (difference + difference.transpose()));
@@ -93,7 +93,7 @@ PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   return predicted;
 }
 
-/// The last frame that was seen, or the first one of all.
+/// Time of the last frame that was seen, or of the first one of all.
 Timestamp CameraOdometry::toldSince(Timestamp stamp) const {
   return trail_.empty() ? first_stamp_.value_or(stamp) : trail_.newest().stamp;
 }
@@ -150,8 +150,8 @@ Odometry CameraOdometry::passOver(Timestamp stamp) {
   return odometry;
 }
 
-/// The step from the frame before, seen or not. The sensors tell of it what they tell since the last frame that was
-/// seen, less what they told up to the frame before.
+/// Step from the frame before, seen or not. The sensors' part of it is what they tell since the last frame that was
+/// seen, minus what they told up to the frame before.
 Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told) {
   last_stamp_ = stamp;
   if (!first_stamp_) first_stamp_ = stamp;
@@ -166,7 +166,8 @@ Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Ma
   return odometry;
 }
 
-/// The vehicle's sensors may be wrong, but not because a few points move alike: most must.
+/// Measures a motion that contradicts the vehicle's sensors. They may be wrong, but not because a few points move
+/// alike: most must.
 std::optional<EgoMotion> CameraOdometry::againstVehicle(std::span<const PoseObservation> observations,
                                                         const std::vector<PointLabel>& labels,
                                                         const FrameHead& head) const {

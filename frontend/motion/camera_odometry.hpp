@@ -26,40 +26,40 @@ struct CameraMotion {
 };
 
 /// The camera's motion from frame to frame and the trail that it leaves: ego-motion where enough points agree on it,
-/// else the motion that was measured last. Frames in which nothing is seen leave no trail: motion is measured from the
-/// last one that was seen. Call in frame order, once per frame.
+/// else the motion measured last. Frames in which nothing is seen leave no trail: motion is measured from the last one
+/// that was seen. Call in frame order, once per frame.
 class CameraOdometry {
  public:
   CameraOdometry(const EgoMotionEstimator::Params& params, const StereoCamera& camera) : ego_motion_(params, camera) {}
 
-  /// Takes what comes with the next frame.
+  /// Takes the inputs that come with the next frame.
   void hear(const FrameInputs& inputs) { vehicle_.hear(inputs); }
-  /// The motion since the last frame that was seen: as the vehicle's own sensors tell it, else at the velocity measured
-  /// last, standing still while none is known.
+  /// Predicts the motion since the last frame that was seen: by the vehicle's own sensors, else at the velocity
+  /// measured last, or standing still while none is known.
   PredictedMotion predict(Timestamp stamp) const;
-  /// Do sensors tell the motion, or was it measured not too long ago?
+  /// True when sensors tell the motion, or it was measured not too long ago.
   bool motionKnown(Timestamp stamp) const;
 
-  /// May the camera have moved like this since the last frame that was seen?
+  /// True when the camera may have moved like this since the last frame that was seen.
   bool believes(const SE3& T_seen_now, const PredictedMotion& predicted) const {
     return !ego_motion_.breaks(T_seen_now.inverse(), predicted);
   }
-  /// The motion since the last frame that was seen. `known` tells where points were then, `observed` where they are
-  /// now; both are parallel. The first frame that is seen does not move.
+  /// Measures the motion since the last frame that was seen. `known` tells where points were then, `observed` where
+  /// they are now; both are parallel. The first frame that is seen does not move.
   CameraMotion measure(const StereoFrame& frame, const std::vector<std::optional<KnownPoint>>& known,
                        const std::vector<std::optional<StereoObservation>>& observed,
                        const PredictedMotion& predicted) const;
-  /// Adds a frame with its measured motion to the trail; the motion since the frame before, seen or not.
+  /// Adds a frame with its measured motion to the trail. Returns the motion since the frame before, seen or not.
   Odometry add(Timestamp stamp, const CameraMotion& motion);
-  /// The same of a frame in which nothing is seen, whose motion is predicted.
+  /// Adds a frame in which nothing is seen, whose motion is predicted.
   Odometry passOver(Timestamp stamp);
 
   const CameraTrail& trail() const { return trail_; }
-  /// Empty where there are none.
+  /// Findings about the vehicle's sensors; empty where there are none.
   std::optional<VehicleSensors> vehicleSensors() const { return vehicle_.sensors(); }
-  /// As last measured; 0 while it is not known.
+  /// Speed as last measured; 0 while it is not known.
   double speed_mps() const { return last_motion_ ? last_motion_->translation().norm() / last_dt_s_ : 0; }
-  /// See FrameHead: of the last frame.
+  /// Segment of the last frame, see FrameHead.
   int segment() const { return segment_; }
 
  private:

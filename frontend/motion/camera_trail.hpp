@@ -11,7 +11,7 @@ namespace motorcade {
 /// The camera's recent path in the front-end's own odometry, for relating observations of different frames.
 class CameraTrail {
  public:
-  /// Frames that are remembered, the newest included: a second at ten frames a second. A point's track spans no more.
+  /// Number of frames remembered, the newest included: a second at ten frames a second. A point's track spans no more.
   static constexpr int kCapacity = 10;
 
   struct Step {
@@ -24,7 +24,7 @@ class CameraTrail {
   bool empty() const { return steps_.empty(); }
   const Step& newest() const { return steps_.back(); }
 
-  /// Where a past frame's camera was, seen from the newest: T_then_now, and the time from now to then (not positive).
+  /// Pose of a past frame's camera seen from the newest, T_then_now, and the time from now to then (not positive).
   struct Relation {
     SE3 T_then_now;
     double dt_s;

@@ -28,7 +28,7 @@ constexpr double kMinVisibleShare = 0.3;    // of the points, in the new image
 
 using Patch = std::array<float, kPatchPixels>;
 
-/// Nearest pixels around a place, enlarged by `scale`; false outside of the image.
+/// Samples the nearest pixels around a place, enlarged by `scale`; false outside of the image.
 bool sample(const Image& image, float x, float y, float scale, Patch& out) {
   const float step = 1 / scale, half = 0.5F * (kPatch - 1) * step;
   const float left = x - half + 0.5F, top = y - half + 0.5F;
@@ -44,7 +44,7 @@ bool sample(const Image& image, float x, float y, float scale, Patch& out) {
   return true;
 }
 
-/// Less its mean, divided by its norm; false without texture.
+/// Subtracts the mean and divides by the norm; false without texture.
 bool normalize(Patch& patch) {
   float sum = 0;
   for (const float v : patch) sum += v;
@@ -57,7 +57,7 @@ bool normalize(Patch& patch) {
   return true;
 }
 
-/// Those that are likely to be in view, the ones seen most often first, spread over the list.
+/// Chooses points that are likely to be in view, those seen most often first, spread over the list.
 std::vector<RestingPoint> chooseVoters(std::span<const RestingPoint> points, const SE3& T_now_then,
                                        const StereoCamera& camera) {
   std::vector<RestingPoint> voters;
@@ -78,7 +78,7 @@ struct Candidate {
   double correlation = -1;
 };
 
-/// All turns at one distance: the patches' scales hardly depend on the turn.
+/// Searches all turns at one distance: the patches' scales hardly depend on the turn.
 class TurnSearch {
  public:
   TurnSearch(const std::vector<RestingPoint>& voters, const ImagePyramid& then, const ImagePyramid& now,
@@ -102,7 +102,7 @@ class TurnSearch {
   const StereoCamera& camera_;
 };
 
-/// The way bends by half of the turn.
+/// Motion with the way bent by half of the turn.
 SE3 TurnSearch::motion(const MotionRange& range, double forward_m, double yaw_rad, double pitch_rad) const {
   Vector6d more = Vector6d::Zero();
   more.z() = forward_m;

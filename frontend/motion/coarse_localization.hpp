@@ -20,14 +20,14 @@ struct RestingPoint {
   int observations = 1;
 };
 
-/// How the camera may have moved between two images, about a predicted motion.
+/// Range of the camera's motion between two images, about a predicted one.
 struct MotionRange {
   SE3 T_then_now;                                       // predicted
   double forward_m = 0, yaw_rad = 0, pitch_rad = 0.03;  // how far it may differ from it, each way
 };
 
-/// The motions within a range under which small patches around points at rest, at the coarsest level of the pyramid,
-/// look most alike in both images, the best first: a search over all distances and turns, for when nothing is near
+/// Finds the motions within a range under which small patches around points at rest look most alike in both images, the
+/// best first. It searches all distances and turns at the coarsest level of the pyramid, for when nothing is near
 /// enough to be aligned. Exact to some pixels, where it is right at all.
 std::vector<SE3> localizeCoarsely(std::span<const RestingPoint> points, const ImagePyramid& then,
                                   const ImagePyramid& now, const MotionRange& range, const StereoCamera& camera);

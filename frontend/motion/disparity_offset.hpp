@@ -14,8 +14,8 @@
 
 namespace motorcade {
 
-/// Calibrates the rig while it drives: a constant error of the disparities (an error of the rectification's vergence)
-/// bends far depths more than near ones, so that no single camera motion explains near and far points alike. Estimates
+/// Calibrates the rig while it drives. A constant error of the disparities (of the rectification's vergence) bends far
+/// depths more than near ones, so no single camera motion explains near and far points alike. Estimates
 ///   offset = true disparity - measured disparity    [px]
 /// next to the motion between two frames, and accumulates it over the drive, starting from a prior around zero.
 /// Call in frame order: it remembers what it learned.
@@ -28,11 +28,11 @@ class DisparityOffsetEstimator {
   };
   DisparityOffsetEstimator(const Params& params, const StereoCamera& camera);
 
-  /// The first frame of the window that ends with frame `now`; empty when none ends there.
+  /// First frame of the window that ends with frame `now`; empty when none ends there.
   std::optional<std::int64_t> windowStart(std::int64_t now) const;
 
-  /// One window: points at rest, their disparities with the offset in use already added. `T_now_then` is the camera's
-  /// motion as estimated so far.
+  /// Learns from one window: points at rest, their disparities with the offset in use already added. `T_now_then` is
+  /// the camera's motion as estimated so far.
   void learn(std::span<const StereoCorrespondence> points, const SE3& T_now_then);
 
   /// Moves the offset in use towards the estimate; returns by how much it changed.

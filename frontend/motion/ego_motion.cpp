@@ -43,7 +43,7 @@ struct Voters {
   double worst_score;  // of a hypothesis that no observation agrees with
 };
 
-/// Spread evenly over the observations.
+/// Chooses voters spread evenly over the observations.
 Voters chooseVoters(std::span<const PoseObservation> observations, const std::vector<double>& votes,
                     double inlier_chi2) {
   std::vector<PoseObservation> voting;
@@ -57,8 +57,8 @@ Voters chooseVoters(std::span<const PoseObservation> observations, const std::ve
   return {PoseObservations(voting), std::move(weights), worst_score};
 }
 
-/// While no steady motion is known: whatever moves, the road does not. Where enough of it is seen, it has a share of
-/// the votes.
+/// Gives the road a share of the votes where enough of it is seen, while no steady motion is known: whatever moves, the
+/// road does not.
 void hearTheRoad(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                  std::vector<double>& votes) {
   const auto isRoad = [&](std::size_t i) {
@@ -76,8 +76,8 @@ void hearTheRoad(std::span<const PoseObservation> observations, const std::vecto
     if (isRoad(i)) votes[i] *= factor;
 }
 
-/// Of each observation. The world is larger than the vehicles in it, though these may carry most points: so what counts
-/// is the floor space that agrees. Points share the vote of their cell; those beyond `kVoteDepth_m` share by bearing.
+/// Vote of each observation. The world is larger than the vehicles in it, though these may carry most points, so the
+/// floor space that agrees counts. Points share the vote of their cell; those beyond `kVoteDepth_m` share by bearing.
 std::vector<double> votesOf(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels) {
   std::map<std::pair<int, int>, int> points_in;
   std::vector<int*> sharing;
@@ -136,7 +136,7 @@ bool slides(const SE3& T_seen_now, double dt_s) {
          turn > kSway_radps * dt_s + std::abs(way.z()) / kMinRadius_m;
 }
 
-/// Against a motion that surprises, as a share of all votes.
+/// Penalty of a motion that surprises, as a share of all votes.
 double EgoMotionEstimator::penaltyOf(const PredictedMotion& predicted) {
   if (predicted.by_vehicle) return kSensorsPenalty;
   return kSurprisePenalty * std::min(1.0, static_cast<double>(predicted.steady_frames) / kTrustedSteadyFrames);
@@ -146,8 +146,8 @@ bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_seen, const PredictedMo
   return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_seen.inverse(), predicted.dt_s);
 }
 
-/// By how much the change from what was predicted is more than a vehicle can do, or than its sensors are wrong; 1: just
-/// what is possible.
+/// Ratio of the change from the prediction to what a vehicle can do, or to the error of its sensors; 1 is just
+/// possible.
 double EgoMotionEstimator::surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const {
   const double change_m = (T_now_seen.inverse().translation() - predicted.T_seen_now.translation()).norm();
   const double possible_m = predicted.by_vehicle
@@ -192,7 +192,7 @@ SE3 EgoMotionEstimator::bestHypothesis(std::span<const PoseObservation> observat
   return best;
 }
 
-/// Covariance-weighted refinement over what agrees with a hypothesis.
+/// Refines a hypothesis over the points that agree with it, weighted by covariances.
 std::optional<PoseFit> EgoMotionEstimator::refine(std::span<const PoseObservation> observations,
                                                   const PoseObservations& all, const SE3& hypothesis) const {
   const auto chi2 = poseChi2(camera_, all, hypothesis);

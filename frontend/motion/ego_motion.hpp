@@ -13,7 +13,7 @@
 
 namespace motorcade {
 
-/// The camera's motion between two frames from points that were triangulated before and are seen now.
+/// Camera motion between two frames from points that were triangulated before and are seen now.
 struct EgoMotion {
   SE3 T_seen_now;
   Matrix6d covariance;        // right perturbation of T_seen_now
@@ -21,20 +21,20 @@ struct EgoMotion {
   int inlier_count = 0;
 };
 
-/// What the frames before tell of the camera's motion.
+/// Motion of the camera as the frames before predict it.
 struct PredictedMotion {
   SE3 T_seen_now;
   double dt_s = 0;        // from the previous frame to now
   int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
   int ahead_frames = 0;   // that the camera drove along its optical axis, as on a car, and none in which it slid
-  /// Of T_seen_now where the vehicle's own sensors tell it, right perturbation; empty where it is the motion before
-  /// that is taken to go on.
+  /// Covariance of T_seen_now by the vehicle's own sensors, right perturbation; empty where the motion before is taken
+  /// to go on.
   std::optional<Matrix6d> by_vehicle{};
 };
 
-/// Does a camera that moves like this go along its optical axis at the speed of a car?
+/// True when a camera that moves like this goes along its optical axis at the speed of a car.
 bool drivesAhead(const SE3& T_seen_now, double dt_s);
-/// Does it go sideways, beyond bumps and the chord of a curve, or turn where it stands?
+/// True when it goes sideways, beyond bumps and the chord of a curve, or turns where it stands.
 bool slides(const SE3& T_seen_now, double dt_s);
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.
@@ -49,25 +49,26 @@ class EgoMotionEstimator {
   EgoMotionEstimator(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera) {}
 
-  /// `observations` hold points in the previous camera's frame, `labels` what they were in the one before it.
-  /// The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random samples are
-  /// drawn from a generator seeded with `seed` (the frame number). Empty when too few points agree on any motion.
+  /// Measures a motion; `observations` hold points in the previous camera's frame, `labels` what they were in the one
+  /// before it. The predicted motion is scored first, and what a vehicle cannot do after it must win by more. Random
+  /// samples are drawn from a generator seeded with `seed` (the frame number). Empty when too few points agree on any
+  /// motion.
   std::optional<EgoMotion> operator()(std::span<const PoseObservation> observations,
                                       const std::vector<PointLabel>& labels, const PredictedMotion& predicted,
                                       std::uint64_t seed) const;
 
-  /// Can a vehicle have moved like this after what was predicted?
+  /// True when a vehicle can have moved like this after what was predicted.
   bool follows(const SE3& T_now_seen, const PredictedMotion& predicted) const {
     return surprise(T_now_seen, predicted) < 1;
   }
-  /// A steady motion that went on in a way that no vehicle can.
+  /// True when a steady motion went on in a way that no vehicle can.
   bool breaks(const SE3& T_now_seen, const PredictedMotion& predicted) const;
 
  private:
   double surprise(const SE3& T_now_seen, const PredictedMotion& predicted) const;
   static double penaltyOf(const PredictedMotion& predicted);
-  /// A car's camera, which has driven ahead all the time, cannot slide: then it is the points that move, as when a
-  /// truck fills the view.
+  /// True for a sliding motion of a car's camera, which has driven ahead all the time and cannot slide. Then the points
+  /// move, as when a truck fills the view.
   static bool isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted);
   SE3 bestHypothesis(std::span<const PoseObservation> observations, const std::vector<PointLabel>& labels,
                      const PredictedMotion& predicted, std::uint64_t seed) const;

@@ -24,7 +24,8 @@ constexpr float kMinSigma_px = 0.25F;
 constexpr int kMinAgreeing = 20;           // points on a motion over a gap ...
 constexpr double kMinAgreeingShare = 0.4;  // ... and of those that were found
 
-/// The point in the left image of now from a guess, coarse to fine; the patch is enlarged as the point came nearer.
+/// Aligns the point in the left image of now from a guess, coarse to fine; the patch is enlarged as the point came
+/// nearer.
 std::optional<AlignedPatch> align(const RestingPoint& point, const Features& then, const Features& now,
                                   Eigen::Vector2f at_px, float scale, int first_level) {
   std::optional<AlignedPatch> found;
@@ -69,7 +70,7 @@ std::vector<FlowObservation> GapBridge::search(const Gap& gap, const SE3& T_then
   return found;
 }
 
-/// By RANSAC over what was found, with disparities in the new pair; empty when too few agree.
+/// Fits a motion by RANSAC to what was found, with disparities in the new pair; empty when too few agree.
 std::optional<SE3> GapBridge::fit(const Gap& gap, const std::vector<FlowObservation>& found,
                                   const SE3& T_then_now) const {
   const SE3 T_now_then = T_then_now.inverse();

@@ -12,11 +12,11 @@
 
 namespace motorcade {
 
-/// Finds points at rest again in a stereo pair that comes after others were missing, dark, blurred or damaged, and
-/// tells how the camera moved meanwhile: search by projection, by the patches around the points. Stateless.
+/// Finds points at rest again in a stereo pair after others were missing, dark, blurred or damaged, and tells how the
+/// camera moved meanwhile. It searches by projection, by the patches around the points. Stateless.
 class GapBridge {
  public:
-  /// Longer gaps are not bridged: little of what was seen is still in view, and places begin to look alike.
+  /// Longest gap that is bridged: beyond it little of what was seen is still in view, and places begin to look alike.
   static constexpr double kMaxGap_s = 2.5;
 
   GapBridge(const EgoMotionEstimator::Params& params, const StereoCamera& camera)
@@ -33,8 +33,8 @@ class GapBridge {
   /// T_then_now by a search around the predicted motion; empty when the points do not agree on one.
   std::optional<SE3> locate(const Gap& gap, const SE3& predicted_T_then_now) const;
 
-  /// The points' places in the left image of now, where a known motion puts them to a few pixels. One observation per
-  /// point that is found, in the order of the points.
+  /// Finds the points in the left image of now, where a known motion puts them to a few pixels. Returns one observation
+  /// per point that is found, in the order of the points.
   std::vector<FlowObservation> find(const Gap& gap, const SE3& T_then_now) const;
 
  private:

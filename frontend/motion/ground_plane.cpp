@@ -78,7 +78,7 @@ GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> po
   return plane_;
 }
 
-/// Of random planes and the last one, the one with most support.
+/// The plane with most support, of random planes and the last one.
 GroundPlane GroundPlaneEstimator::bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const {
   std::vector<GroundPlane> planes{plane_};
   std::mt19937_64 random(seed);

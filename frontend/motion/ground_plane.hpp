@@ -30,10 +30,10 @@ class GroundPlaneEstimator {
   };
   explicit GroundPlaneEstimator(const Params& params);
 
-  /// The caller leaves points out that move. Keeps the last plane when too few points lie on one.
+  /// Finds the plane; the caller leaves out points that move. Keeps the last plane when too few points lie on one.
   GroundPlane operator()(std::span<const GroundCandidate> points, std::uint64_t seed);
 
-  /// Does a point lie on the last plane, as far as can be told?
+  /// True when a point lies on the last plane, as far as can be told.
   bool isOnGround(const GroundCandidate& point) const;
 
  private:

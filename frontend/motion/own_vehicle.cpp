@@ -8,10 +8,10 @@
 namespace motorcade {
 namespace {
 
-/// No part of the own vehicle that a camera sees is farther ahead, and no road user in front of it is nearer.
+/// Distance ahead that no visible part of the own vehicle exceeds; no road user in front of it is nearer.
 constexpr double kReachAhead_m = 3.5;
-/// Aside of the camera there is the own vehicle for sure, if anything: half a car's width. It reaches on as far as
-/// points that stay follow each other without a gap; a vehicle in the next lane is farther away.
+/// Distance aside that only the own vehicle can take, half a car's width. It reaches on as far as points that stay
+/// follow each other without a gap; a vehicle in the next lane is farther away.
 constexpr double kReachAside_m = 1.0, kGap_m = 0.3;
 
 constexpr double kCompany_m = 0.5;  // points of the own vehicle have others as near, ...
@@ -21,7 +21,7 @@ constexpr double kMove_px = 10;  // of a point at rest: twenty times the toleran
 /// Each coordinate may change by this beyond the noise: camera and bonnet shake against each other.
 constexpr double kTolerance_px = 0.5;
 constexpr double kMaxChi2 = 16.3;  // 3 degrees of freedom: 99.9 %
-/// The camera goes on by this between two votes, so that their views differ: ten of them take a meter.
+/// Way of the camera between two votes, so that their views differ: ten of them take a meter.
 constexpr double kVoteTravel_m = 0.1;
 
 double misfitChi2(const Eigen::Vector3d& difference_px, const Eigen::Vector3d& sigma_then_px,
@@ -31,13 +31,13 @@ double misfitChi2(const Eigen::Vector3d& difference_px, const Eigen::Vector3d& s
   return (difference_px.array().square() / variance_px2).sum();
 }
 
-/// T_now_then * p_then, without the inverse as a whole.
+/// T_now_then * p_then, without computing the inverse as a whole.
 Eigen::Vector3d intoNow(const CameraTrail::Relation& relation, const Eigen::Vector3d& p_then) {
   return relation.T_then_now.rotation().transpose() * (p_then - relation.T_then_now.translation());
 }
 
-/// Are there other points around, among those that are ordered from left to right? A wrong disparity on a vehicle that
-/// keeps our pace is alone, or nearly so.
+/// True when other points are around, among those ordered from left to right. A wrong disparity on a vehicle that keeps
+/// our pace is alone, or nearly so.
 template <class Points>
 bool hasCompany(const Eigen::Vector3d& p_cam, const Points& points) {
   const auto x_m = [](const auto& point) { return point.p_cam.x(); };
@@ -59,7 +59,7 @@ bool OwnVehicle::isNear(const StereoObservation& seen) const {
   return camera_.fx_px * camera_.baseline_m < kReachAhead_m * seen.uvd_px.z();
 }
 
-/// May a point that is new say something of the own vehicle?
+/// True when a new point may say something of the own vehicle.
 bool OwnVehicle::isOfInterest(const StereoObservation& seen) const {
   const double u_px = seen.uvd_px.x(), v_px = seen.uvd_px.y();
   return isNear(seen) || map_.isNearVotes(u_px, v_px) || map_.isMasked(u_px, v_px);
@@ -81,7 +81,7 @@ void OwnVehicle::leaveOut(const OpticalFlow& flow, std::vector<std::optional<Ste
   }
 }
 
-/// Compares a point with where it was seen before. What neither stays nor rests is compared anew from here on.
+/// Compares a point with where it was seen before. A point that neither stays nor rests is compared anew from here on.
 OwnVehicle::Verdict OwnVehicle::judge(Watched& point, const StereoObservation& seen, const CameraTrail& trail) const {
   const bool staying = stays(point, seen);
   if (point.fixed && staying) return Verdict::kStays;
@@ -98,7 +98,7 @@ OwnVehicle::Verdict OwnVehicle::judge(Watched& point, const StereoObservation& s
   return Verdict::kNone;
 }
 
-/// Takes those of the points that stay for fixed that are not alone and lie where the own vehicle reaches.
+/// Takes the staying points for fixed that are not alone and lie where the own vehicle reaches.
 void OwnVehicle::takeFixed(std::vector<Staying> staying, std::vector<Watched>& watched) {
   std::ranges::sort(staying, {}, [](const Staying& point) { return point.p_cam.x(); });
   std::erase_if(staying, [&, all = staying](const Staying& point) {
@@ -122,7 +122,7 @@ void OwnVehicle::widen(const std::vector<Staying>& staying) {
   });
 }
 
-/// Has the camera gone on since the last vote?
+/// True when the camera has gone on since the last vote.
 bool OwnVehicle::isTimeToVote(const CameraTrail& trail) {
   const Eigen::Vector3d& here = trail.newest().T_world_cam.translation();
   if (voted_at_ && (here - *voted_at_).norm() < kVoteTravel_m) return false;

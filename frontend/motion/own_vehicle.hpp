@@ -16,9 +16,9 @@
 
 namespace motorcade {
 
-/// Finds what is fixed to the camera, as the own vehicle's bonnet: near points that stay where they are in both images
-/// while a point at rest would have moved far. Each is left out as soon as it shows; where such points were seen often,
-/// the image is masked from there to its border, as reflections move on a bonnet. Call `learn` in frame order.
+/// Finds what is fixed to the camera, as the own vehicle's bonnet: near points that stay in place in both images while
+/// a point at rest would have moved far. Each is left out as soon as it shows. Where such points were seen often, the
+/// image is masked from there to its border, as reflections move on a bonnet. Call `learn` in frame order.
 class OwnVehicle {
  public:
   explicit OwnVehicle(const StereoCamera& camera);
@@ -30,12 +30,12 @@ class OwnVehicle {
   /// flow observation, those of the own vehicle among them.
   void learn(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& seen,
              const CameraTrail& trail);
-  /// Points that were seen before are not compared with what comes: the motion in between is not known.
+  /// Forgets the points seen so far: the motion up to the next frame is not known, so they cannot be compared.
   void forgetPoints() { watched_.clear(); }
   /// Adds to the disparities of all points that were seen.
   void shiftDisparities(double change_px);
 
-  /// What is masked; empty while nothing is.
+  /// Masked part of the image; empty while nothing is.
   const std::optional<OwnVehicleView>& view() const { return map_.view(); }
 
  private:

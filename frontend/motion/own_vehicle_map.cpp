@@ -84,7 +84,7 @@ void OwnVehicleMap::mask() {
   if (std::ranges::find(masked_, 1) != masked_.end()) view_ = describe();
 }
 
-/// The sure cells that hang together with the first one, which are taken out of `sure`.
+/// Takes the sure cells that hang together with the first one out of `sure`.
 std::vector<OwnVehicleMap::Cell> OwnVehicleMap::takeConnected(Cells& sure, Cell first) const {
   std::vector<Cell> part{first};
   sure[first.row * columns_ + first.column] = 0;
@@ -97,8 +97,8 @@ std::vector<OwnVehicleMap::Cell> OwnVehicleMap::takeConnected(Cells& sure, Cell 
   return part;
 }
 
-/// The border at which a part of the own vehicle enters the image; empty where it reaches none. A bonnet reaches the
-/// sides, too.
+/// Border at which a part of the own vehicle enters the image; empty where it reaches none. A bonnet reaches the sides,
+/// too.
 std::optional<OwnVehicleMap::Border> OwnVehicleMap::borderOf(const std::vector<Cell>& part) const {
   const auto reaches = [&](const auto& distance) {
     return std::ranges::any_of(part, [&](const Cell& cell) { return distance(cell) <= kReach_cells; });
@@ -110,7 +110,7 @@ std::optional<OwnVehicleMap::Border> OwnVehicleMap::borderOf(const std::vector<C
   return std::nullopt;
 }
 
-/// Masks a cell, what lies between it and the border, and what is around these and not seen through.
+/// Masks a cell, the cells between it and the border, and those around these that are not seen through.
 void OwnVehicleMap::fill(Cell cell, Border border) {
   const int across = border == Border::kLeft ? -1 : border == Border::kRight ? 1 : 0;
   const int down = border == Border::kTop ? -1 : border == Border::kBottom ? 1 : 0;

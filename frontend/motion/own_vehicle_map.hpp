@@ -9,9 +9,9 @@
 
 namespace motorcade {
 
-/// Where the left image shows the own vehicle, in cells: points that are fixed to the camera vote for theirs, points at
-/// rest in the world, which are seen through it, against it. What hangs together with a border of the image is masked,
-/// with a margin, and filled up to that border.
+/// Map of the left image's cells that show the own vehicle. Points fixed to the camera vote for their cells; points at
+/// rest in the world, seen through a cell, vote against it. Cells that hang together with a border of the image are
+/// masked, with a margin, and filled up to that border.
 class OwnVehicleMap {
  public:
   static constexpr int kCell_px = 16;  // three times the least distance of points, half that of usual ones
@@ -20,14 +20,14 @@ class OwnVehicleMap {
 
   void voteFor(double u_px, double v_px) { vote(u_px, v_px, kFor); }
   void voteAgainst(double u_px, double v_px) { vote(u_px, v_px, kAgainst); }
-  /// Counts the votes since the last time: a cell has one, and what speaks against it prevails.
+  /// Counts the votes since the last time. A cell has one vote, and votes against it prevail.
   void count();
-  /// Forgets them.
+  /// Forgets the votes.
   void discard();
 
-  /// Is the own vehicle seen there?
+  /// True where the own vehicle is seen.
   bool isMasked(double u_px, double v_px) const { return view_ && masked_[cellAt(u_px, v_px)] != 0; }
-  /// Had cells around votes for them?
+  /// True where cells around had votes for them.
   bool isNearVotes(double u_px, double v_px) const { return any_votes_ && near_votes_[cellAt(u_px, v_px)] != 0; }
   bool empty() const { return !view_; }
   const std::optional<OwnVehicleView>& view() const { return view_; }

@@ -15,7 +15,7 @@ struct LowPoint {
   double tolerance_m;  // of its height above the plane
 };
 
-/// The position of the plane with most support, the first of several. A point near a plane supports it by a truncated
+/// Index of the plane with most support, the first of several. A point near a plane supports it by a truncated
 /// quadratic; points below speak against it.
 std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points);
 

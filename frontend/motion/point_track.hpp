@@ -25,7 +25,7 @@ struct StereoCorrespondence {
   Eigen::Vector3d uvd_now_px, sigma_now_px;
 };
 
-/// What the front-end remembers of a scene point: its latest observations and what was last found out about it.
+/// Memory of a scene point: its latest observations and the last findings about it.
 struct PointTrack {
   static constexpr int kCapacity = CameraTrail::kCapacity;
 
@@ -42,13 +42,13 @@ struct PointTrack {
   const PointObservation& newest() const { return observations[count - 1]; }
   /// The observation of a frame, or null.
   const PointObservation* find(std::int64_t step) const;
-  /// From one of its observations to the newest.
+  /// Correspondence from one of its observations to the newest.
   StereoCorrespondence sinceThen(const PointObservation& then) const;
   /// Becomes the track of a new point, without an observation.
   void restart(PointId new_point);
   /// Appends an observation and forgets the oldest one beyond the capacity.
   void add(const PointObservation& observation);
-  /// Becomes `before` with another observation. What was found out about its motion holds no longer.
+  /// Becomes `before` with another observation. The findings about its motion hold no longer.
   void extend(const PointTrack& before, const PointObservation& observation);
 };
 

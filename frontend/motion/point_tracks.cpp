@@ -11,18 +11,19 @@
 namespace motorcade {
 namespace {
 
-/// A track whose misfit as a point at rest stays below this, per degree of freedom, has the fitted position; the median
-/// of points at rest is about 1, and a mover exceeds it within a few frames.
+/// Misfit per degree of freedom of a point at rest below which a track has the fitted position. The median of points at
+/// rest is about 1, and a mover exceeds it within a few frames.
 constexpr double kMaxStaticChi2 = 3.0;
-/// A track that fits motion better than rest by this much is checked for ambiguous texture: four standard deviations of
-/// a single residual, below it the motion is not significant anyway.
+/// Gain of motion over rest above which a track is checked for ambiguous texture: four standard deviations of a single
+/// residual. Below it the motion is not significant anyway.
 constexpr double kMinMotionChi2 = 16;
 constexpr int kMaxAmbiguity = 3;  // frames after which an ambiguous point is trusted again when it no longer is
-/// A track of so many observations that is not ambiguous is checked in one of a few frames, each in another one.
+/// Observations from which on a track that is not ambiguous is checked in one of a few frames only, each in another
+/// one.
 constexpr int kTrusted_observations = 5;
 constexpr std::int64_t kTrustedPeriod_frames = 4;
 
-/// Tracks of a frame exceed the second cache: what is needed of one is asked for while those before it are at work.
+/// Tracks of a frame exceed the second cache, so a track is prefetched while those before it are at work.
 constexpr std::size_t kPrefetchAhead = 3;
 constexpr std::ptrdiff_t kPointsAhead = 8;  // where it is but the number of its point
 
@@ -70,8 +71,8 @@ std::vector<std::optional<KnownPoint>> PointTracks::known(const OpticalFlow& flo
   return known;
 }
 
-/// The fitted position while the track fits a point at rest, else the triangulated one. Empty when the trail no longer
-/// reaches back to the last observation.
+/// Position of a point: the fitted one while the track fits a point at rest, else the triangulated one. Empty when the
+/// trail no longer reaches back to the last observation.
 std::optional<KnownPoint> PointTracks::knownPoint(const PointTrack& track, const CameraTrail& trail) const {
   const auto& newest = track.newest();
   const auto* relation = trail.find(newest.step);
@@ -129,7 +130,7 @@ void PointTracks::update(const OpticalFlow& flow, const std::vector<std::optiona
   features_ = flow.features;
 }
 
-/// What the observations of a track up to now tell; nothing is known of its motion yet.
+/// Fits the observations of a track up to now; nothing is known of its motion yet.
 void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Features& now) const {
   if (track.count < 2) return;  // nothing to fit
   const auto [at_rest, moving] = scene_flow_.fit(track, trail);
@@ -145,8 +146,8 @@ void PointTracks::fit(PointTrack& track, const CameraTrail& trail, const Feature
     track.ambiguity = std::clamp(track.ambiguity + (isFoundAtRest(track, trail, now) ? 1 : -1), 0, kMaxAmbiguity);
 }
 
-/// Is its patch also found where it would be at rest? Looked for both ways, because something else may hide its
-/// position at rest in one of the two images.
+/// True when its patch is also found where it would be at rest. It is looked for both ways, because something else may
+/// hide its position at rest in one of the two images.
 bool PointTracks::isFoundAtRest(const PointTrack& track, const CameraTrail& trail, const Features& now) const {
   const auto* before = track.find(step_ - 1);
   const auto* relation = trail.find(step_ - 1);

@@ -20,7 +20,7 @@
 
 namespace motorcade {
 
-/// What a track tells of its point before the point is observed again.
+/// Prediction of a track for its point before the point is observed again.
 struct KnownPoint {
   Eigen::Vector3d p_cam;  // in the newest camera of the trail, as if it were at rest since it was last observed
   Eigen::Matrix3d covariance;
@@ -28,8 +28,8 @@ struct KnownPoint {
   PointLabel label;     // then
 };
 
-/// The tracks of scene points over the latest frames, each fitted as a point at rest and as a moving one. Call `update`
-/// in frame order. Nothing that comes out refers to a track beyond the next `update`.
+/// Tracks of scene points over the latest frames, each fitted as a point at rest and as a moving one. Call `update` in
+/// frame order. No result refers to a track beyond the next `update`.
 class PointTracks {
  public:
   struct Params {
@@ -38,16 +38,16 @@ class PointTracks {
   };
   PointTracks(const Params& params, const StereoCamera& camera);
 
-  /// One per flow observation, empty for a new point. To be asked before the trail gets the frame of `flow`.
+  /// Returns one item per flow observation, empty for a new point. Call before the trail gets the frame of `flow`.
   std::vector<std::optional<KnownPoint>> known(const OpticalFlow& flow, const CameraTrail& trail) const;
 
-  /// Extends the tracks by the newest frame of the trail and fits them anew: `observed` has one item per flow
+  /// Extends the tracks by the newest frame of the trail and fits them anew. `observed` has one item per flow
   /// observation. A track ends when optical flow no longer follows its point.
   void update(const OpticalFlow& flow, const std::vector<std::optional<StereoObservation>>& observed,
               const CameraTrail& trail);
 
-  /// The tracks that the last update extended, ordered by point: one per item of `observed` that is not empty. Valid
-  /// until the next update.
+  /// Tracks that the last update extended, ordered by point: one per item of `observed` that is not empty. Valid until
+  /// the next update.
   std::vector<std::reference_wrapper<const PointTrack>> observedNow() const;
 
   /// `points` are those of `observedNow`, with the labels that the segmentation gave them.

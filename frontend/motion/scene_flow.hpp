@@ -10,9 +10,9 @@
 
 namespace motorcade {
 
-/// Scene flow: the motion of single points relative to the world, from their observations over several frames.
-/// Both models are fitted to the observations (u, v, d) themselves, through the camera's path, where the noise is
-/// unbiased at any range; differences of triangulated points are not. Stateless.
+/// Scene flow: motion of single points relative to the world, from their observations over several frames. Both models
+/// are fitted to the observations (u, v, d) themselves, through the camera's path: their noise is unbiased at any
+/// range, that of differences of triangulated points is not. Stateless.
 class SceneFlowEstimator {
  public:
   struct Params {
@@ -20,7 +20,8 @@ class SceneFlowEstimator {
     int min_observations = 3;      // fewer tell nothing about motion
     double max_speed_mps = 60;     // standard deviation of the velocity's prior
     double pose_jitter_px = 0.15;  // image error of the camera's path, added to each observation
-    /// Standard deviation of what the moving model leaves out: old observations count less, where it would show.
+    /// Standard deviation of the acceleration that the moving model leaves out. Old observations count less, where it
+    /// would show.
     double acceleration_mps2 = 1;
     double huber_sigmas = 2.5;  // where the loss turns linear, in units of the whitened residual norm
     int iterations = 3;
@@ -34,8 +35,8 @@ class SceneFlowEstimator {
     Eigen::Matrix3d covariance;
     double chi2;  // 3n - 3 degrees of freedom
   };
-  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise,
-  /// over the longest window that such a motion fits: near vehicles that brake or turn leave it within half a second.
+  /// A point with constant velocity v: p_k = T_k_now (p + v dt_k + a dt_k^2 / 2), a ~ N(0, acceleration^2) as noise.
+  /// The window is the longest that such a motion fits: near vehicles that brake or turn leave it within half a second.
   /// Empty with too few observations or when no window fits.
   struct Fits {
     std::optional<StaticFit> at_rest;

@@ -78,8 +78,8 @@ Sums sumsOf(Pieces pieces, double speed_variance, double yaw_rate_variance) {
 
 double square(double x) { return x * x; }
 
-/// A motion's noise along the vehicle's axes at its end, beside errors of the state. A heading that walks off
-/// carries the place aside by the way / 2 with it, by the way / sqrt(3) in all; so does the slope of a road.
+/// Noise of a motion along the vehicle's axes at its end, beside errors of the state. A heading that walks off carries
+/// the place aside by the way / 2 with it, by the way / sqrt(3) in all; so does the slope of a road.
 Matrix6d noiseOf(const Sums& sums) {
   const double way_m = sums.way_m, slope = square(kSlopeWalk) * sums.path_m;
   const double heading = sums.heading_variance;
@@ -95,7 +95,7 @@ Matrix6d noiseOf(const Sums& sums) {
   return noise;
 }
 
-/// Turns both halves.
+/// Rotation of both halves of a perturbation.
 Matrix6d turning(const Eigen::Matrix3d& R) {
   Matrix6d both = Matrix6d::Zero();
   both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
@@ -112,7 +112,7 @@ VehicleCalibration::VehicleCalibration()
   covariance_ = sigma.cwiseAbs2().asDiagonal();
 }
 
-/// The Jacobian of the motion under right perturbation, along the vehicle's axes; by differences, as arcs are many.
+/// Jacobian of the motion under right perturbation, along the vehicle's axes, by differences, as arcs are many.
 VehicleCalibration::StateJacobian VehicleCalibration::jacobian(Pieces pieces, const SE3& T_then_now) const {
   constexpr double kStep = 1e-5;
   const Matrix6d R_vehicle_cam = turning(mountingOf(state_).rotation());
@@ -151,7 +151,7 @@ VehicleCalibration::Surprise VehicleCalibration::compare(Pieces pieces, const Un
           std::abs(found.seen_less_expected[5]) / found.dt_s / std::sqrt(yaw_variance)};
 }
 
-/// Places and the heading are compared; pitch and roll are the springs'.
+/// Learns from the places and the heading; pitch and roll are the springs'.
 void VehicleCalibration::learn(Pieces pieces, const UncertainMotion& seen) {
   constexpr int kCompared = 4;
   const Difference found = difference(pieces, seen.T_then_now);
@@ -180,7 +180,7 @@ void VehicleCalibration::learn(Pieces pieces, const UncertainMotion& seen) {
   learnNoise(found, camera_variance);
 }
 
-/// The samples' noise is what differs and is not the camera's.
+/// Learns the samples' noise: the difference that is not the camera's.
 void VehicleCalibration::learnNoise(const Difference& found, const Vector6d& camera_variance) {
   const auto follow = [&](double& variance, int row, double least) {
     const double squared = square(found.seen_less_expected[row]) - camera_variance[row];

@@ -13,8 +13,8 @@ struct UncertainMotion {
   Matrix6d covariance;
 };
 
-/// What links the vehicle's sensors to the camera: the speed's scale, the yaw rate's bias, and how the camera is
-/// mounted. A Kalman filter learns them, and how noisy the sensors are, from motions that the camera measured.
+/// Link between the vehicle's sensors and the camera: the speed's scale, the yaw rate's bias, and the camera's
+/// mounting. A Kalman filter learns them, and how noisy the sensors are, from motions that the camera measured.
 ///
 /// Between two moments the vehicle's rear axle goes along arcs, E = prod exp([s v dt, 0, 0; 0, 0, (w - b) dt]), and so
 /// the camera by M^-1 E M with its mounting M = T_vehicle_cam.
@@ -25,15 +25,15 @@ class VehicleCalibration {
 
   VehicleCalibration();
 
-  /// The camera's motion over pieces of the vehicle's.
+  /// Motion of the camera over pieces of the vehicle's.
   UncertainMotion motionOver(std::span<const VehicleSamples::Piece> pieces) const;
 
-  /// The camera's measured motion less the vehicle's, in deviations of what is usual on roads.
+  /// Measured motion of the camera minus the vehicle's, in deviations of what is usual on roads.
   struct Surprise {
     double speed_sigmas = 0, yaw_rate_sigmas = 0;
   };
   Surprise compare(std::span<const VehicleSamples::Piece> pieces, const UncertainMotion& seen) const;
-  /// Learns from a motion that the camera measured over them, from one frame to the next.
+  /// Learns from a motion that the camera measured over these pieces, from one frame to the next.
   void learn(std::span<const VehicleSamples::Piece> pieces, const UncertainMotion& seen);
 
   double scale() const { return state_[kScale]; }

@@ -10,7 +10,7 @@ namespace {
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
 
-/// The motion of a camera that looks ahead, or the mean over pieces.
+/// Motion of a camera that looks ahead, or the mean over pieces.
 VehicleSensors::Motion motionOf(const SE3& T_then_now, double dt_s) {
   return {T_then_now.translation().z() / dt_s, -T_then_now.log()[4] / dt_s};
 }
@@ -57,7 +57,8 @@ void VehicleOdometry::judge(bool agrees) {
   believed_ = agreement_ > (believed_ ? kLeastAgreement : kRegainedAgreement);
 }
 
-/// Vehicles do not fill the view for ever, and a sensor may stick.
+/// Counts frames in dispute, of which many end the belief: vehicles do not fill the view for ever, and a sensor may
+/// stick.
 void VehicleOdometry::dispute() {
   constexpr int kMostDisputed = 50;
   if (++disputed_ < kMostDisputed) return;

@@ -9,22 +9,22 @@
 
 namespace motorcade {
 
-/// The camera's motion as the vehicle's own sensors tell it. They are believed until they contradict the camera in
-/// several frames, and again when they have agreed with it for a while. Call it in frame order.
+/// Camera motion by the vehicle's own sensors. They are believed until they contradict the camera in several frames,
+/// and again when they have agreed with it for a while. Call it in frame order.
 class VehicleOdometry {
  public:
   /// Takes the samples that came with a frame.
   void hear(const FrameInputs& inputs);
-  /// The motion between two moments; empty where samples are missing, or are not believed.
+  /// Motion between two moments; empty where samples are missing, or are not believed.
   std::optional<UncertainMotion> motion(Timestamp from, Timestamp to) const;
-  /// A motion that the camera measured, from one frame to the next.
+  /// Compares the sensors with a motion that the camera measured, from one frame to the next.
   void compare(Timestamp from, Timestamp to, const UncertainMotion& seen);
-  /// They tell a motion that hardly a point agrees with, but vehicles around the camera may be why.
+  /// Notes that hardly a point agrees with the sensors, where vehicles around the camera may be why.
   void dispute();
-  /// Nothing before this moment will be asked for.
+  /// Forgets samples before this moment, which are not asked for any more.
   void forgetBefore(Timestamp stamp) { samples_.forgetBefore(stamp); }
 
-  /// Empty while there were no samples.
+  /// Findings about the sensors; empty while there were no samples.
   std::optional<VehicleSensors> sensors() const;
 
  private:

@@ -12,7 +12,7 @@ constexpr std::size_t kMostSamples = 20'000;  // 20 s at 1 kHz
 constexpr double kHeld_s = 0.25;              // beyond the first and the last sample
 constexpr double kBridged_s = 1.0;            // between two samples
 constexpr double kUsual_s = 0.12;             // between two samples: sensors with ten a second are slow ones
-/// Tires hold no more than 1.2 g; the rest is what steps and noise of the sensor do.
+/// Limits of believable changes of speed: tires hold no more than 1.2 g, and the rest is steps and noise of the sensor.
 constexpr double kMaxAcceleration_mps2 = 12, kStep_mps = 0.5;
 constexpr double kMostPassedOver_s = 0.9;  // wheels spin or lock no longer: it was the sensor that leapt
 constexpr double kBackShare = 0.5;         // of a leap: by so much at least it goes back
@@ -21,7 +21,7 @@ bool isFinite(const VehicleMotionSample& sample) {
   return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
 }
 
-/// Values at a moment between two samples, or beside the nearer one.
+/// Interpolates values between two samples, or takes those of the nearer one beside them.
 VehicleMotionSample at(const VehicleMotionSample& before, const VehicleMotionSample& after, Timestamp stamp) {
   const double gap_s = secondsBetween(before.stamp, after.stamp);
   const double share = gap_s > 0 ? std::clamp(secondsBetween(before.stamp, stamp) / gap_s, 0.0, 1.0) : 0.0;
@@ -32,7 +32,7 @@ VehicleMotionSample at(const VehicleMotionSample& before, const VehicleMotionSam
           .yaw_rate_sigma_radps = std::max(before.yaw_rate_sigma_radps, after.yaw_rate_sigma_radps)};
 }
 
-/// The change of speed where no vehicle could make it, else 0.
+/// Change of speed where no vehicle could make it, else 0.
 double leapBetween(const VehicleMotionSample& before, const VehicleMotionSample& now) {
   const double change_mps = now.speed_mps - before.speed_mps;
   const double possible_mps = kStep_mps + kMaxAcceleration_mps2 * secondsBetween(before.stamp, now.stamp);
@@ -57,13 +57,13 @@ void VehicleSamples::add(const VehicleMotionSample& sample) {
   if (samples_.size() > kMostSamples) samples_.erase(samples_.begin());
 }
 
-/// Keeps one sample from before.
+/// Forgets samples before a moment, but keeps one.
 void VehicleSamples::forgetBefore(Timestamp stamp) {
   const auto first = std::ranges::upper_bound(samples_, stamp, {}, &VehicleMotionSample::stamp);
   if (first - samples_.begin() > 1) samples_.erase(samples_.begin(), std::prev(first));
 }
 
-/// Those within the span, with one before and one after it where there are. From a leap on samples are passed over, and
+/// Samples within the span, with one before and one after it where there are. After a leap samples are passed over, and
 /// the speed before it is held, until one leaps back.
 std::vector<VehicleMotionSample> VehicleSamples::believable(Timestamp from, Timestamp to) const {
   auto it = std::ranges::upper_bound(samples_, from, {}, &VehicleMotionSample::stamp);

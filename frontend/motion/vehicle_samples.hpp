@@ -10,7 +10,7 @@ namespace motorcade {
 /// Samples of the vehicle's own motion by time, as they come: at a rate of their own, late, out of order, with gaps.
 class VehicleSamples {
  public:
-  /// One with the stamp of an earlier one, or that is no number, is left out.
+  /// Adds a sample. One with an earlier one's stamp, or that is not finite, is left out.
   void add(const VehicleMotionSample& sample);
   void forgetBefore(Timestamp stamp);
 
@@ -20,9 +20,9 @@ class VehicleSamples {
     double speed_sigma_mps, yaw_rate_sigma_radps;  // as told, 0 where they are not
     double unknown_s = 0;                          // from the samples beside it, where these are farther than usual
   };
-  /// The span cut at the samples, with values halfway between those of its ends; before the first and after the last
-  /// sample they are held for a while. Speeds that no vehicle reaches from the sample before are passed over, as those
-  /// of a wheel that spins. Empty where samples are missing.
+  /// Cuts the span at the samples; each piece has the mean of its ends. Before the first and after the last sample,
+  /// values are held for a while. Speeds that no vehicle reaches from the sample before are passed over, as those of a
+  /// spinning wheel. Empty where samples are missing.
   std::optional<std::vector<Piece>> between(Timestamp from, Timestamp to) const;
 
  private:

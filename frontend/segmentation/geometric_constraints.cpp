@@ -15,7 +15,7 @@ constexpr int kMinObservations = 3;          // of a track: between two neighbor
 constexpr double kMaxEpipolarSigmas = 4;     // one of 15,000 points at rest exceeds it by noise
 constexpr double kMaxFlowBound_px = 2;       // beyond the noise: room for errors of the camera's motion
 
-/// Where the point of `uvd_then_px` with another disparity appears now.
+/// Image position now of the point of `uvd_then_px`, with another disparity.
 std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px,
                                         double disparity_px, const SE3& T_now_then) {
   const auto uvd = camera.project(T_now_then * camera.triangulate({uvd_then_px.x(), uvd_then_px.y(), disparity_px}));
@@ -44,7 +44,7 @@ std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, c
   return residual;
 }
 
-/// Judged over the longest stretch of the track, where the epipolar line is longest.
+/// Judges over the longest stretch of the track, where the epipolar line is longest.
 bool violatesGeometry(const StereoCamera& camera, const PointTrack& track, const CameraTrail& trail) {
   if (track.count < kMinObservations) return false;
   const auto* relation = trail.find(track.oldest().step);

@@ -9,15 +9,14 @@
 
 namespace motorcade {
 
-/// How a point's image motion between two frames departs from what the camera's motion explains for a point at rest
+/// Departure of a point's image motion between two frames from what the camera's motion explains for a point at rest
 /// (Kundu, Krishna, Sivaswamy, "Moving object detection by multi-view geometric techniques from a single camera mounted
 /// robot", 2009).
 struct GeometricResidual {
   /// Distance from the epipolar line, in standard deviations.
   double epipolar_sigmas = 0;
-  /// How far the flow vector lies outside its bound along the epipolar line, in px beyond the bound; 0 inside.
-  /// The bound is the stretch of the line that the depths within three standard deviations of the stereo depth project
-  /// to.
+  /// Distance of the flow vector from its bound along the epipolar line, in px beyond the bound; 0 inside. The bound is
+  /// the stretch of the line to which depths within three standard deviations of the stereo depth project.
   double flow_bound_px = 0;
 };
 
@@ -26,8 +25,8 @@ struct GeometricResidual {
 std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, const StereoCorrespondence& point,
                                                    const SE3& T_now_then);
 
-/// Does the newest observation of a track break the epipolar constraint or the flow-vector bound of a point at rest?
-/// Not so for tracks that are too short to tell.
+/// True when the newest observation of a track breaks the epipolar constraint or the flow-vector bound of a point at
+/// rest; false for tracks that are too short to tell.
 bool violatesGeometry(const StereoCamera& camera, const PointTrack& track, const CameraTrail& trail);
 
 }  // namespace motorcade

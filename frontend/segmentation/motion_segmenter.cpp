@@ -33,8 +33,8 @@ struct PooledVelocity {
   Eigen::Matrix3d covariance;
 };
 
-/// Information-weighted mean velocity of the members, with a starting point that outliers cannot move: the
-/// component-wise median.
+/// Information-weighted mean velocity of the members. It starts from the component-wise median, which outliers cannot
+/// move.
 PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector<ScenePoint>& points, double max_chi2) {
   Eigen::Vector3d velocity;
   std::vector<double> values(members.size());
@@ -131,7 +131,7 @@ PointLabel MotionSegmenter::decide(const MotionComponent& component, const std::
   return isLikeAVehicle(component, points, ground) ? PointLabel::kMoving : PointLabel::kUnknown;
 }
 
-/// Not too long, not up in the air, and not going up or down.
+/// True when it is not too long, not up in the air, and not going up or down.
 bool MotionSegmenter::isLikeAVehicle(const MotionComponent& component, const std::vector<ScenePoint>& points,
                                      const GroundPlane& ground) const {
   Eigen::AlignedBox3d box;

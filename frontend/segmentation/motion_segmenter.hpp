@@ -9,8 +9,8 @@
 namespace motorcade {
 
 /// Splits the scene into moving, static and unknown parts: connected components of the Delaunay graph over the image
-/// points, its edges cut where the scene flow of the two ends differs by more than their uncertainty allows, or where
-/// the two are too far apart to be one vehicle. Stateless.
+/// points. An edge is cut where the scene flow of its ends differs by more than their uncertainty allows, or where they
+/// are too far apart to be one vehicle. Stateless.
 class MotionSegmenter {
  public:
   struct Params {
@@ -29,10 +29,10 @@ class MotionSegmenter {
   std::vector<MotionComponent> operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
                                           const GroundPlane& ground, double camera_speed_mps) const;
 
-  /// The edge predicate: may two points belong to one rigid body?
+  /// The edge predicate: true when two points may belong to one rigid body.
   bool belongTogether(const ScenePoint& a, const ScenePoint& b) const;
 
-  /// Is the scene flow of `point` certain enough to be a vertex of the graph?
+  /// True when the scene flow of `point` is certain enough to be a vertex of the graph.
   bool isVertex(const ScenePoint& point) const;
 
  private:

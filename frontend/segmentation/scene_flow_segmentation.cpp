@@ -21,14 +21,15 @@ bool isSure(const CameraMotion& camera) {
          camera.inlier_count >= kSureShare * camera.measured_count;
 }
 
-/// Two measurements of a motion over a gap: what they differ by is noise, or one of them is wrong.
+/// Compares two measurements of a motion over a gap: they differ by noise, or one of them is wrong.
 bool agree(const SE3& a, const SE3& b) {
   constexpr double kApart_m = 0.5, kApart_rad = 0.02;
   const Vector6d apart = (a.inverse() * b).log();
   return apart.head<3>().norm() < kApart_m && apart.tail<3>().norm() < kApart_rad;
 }
 
-/// Looks in the right image, too: what is fixed to the camera hides there what the left one sees.
+/// Leaves out ignored points. It looks in the right image, too: what is fixed to the camera hides there what the left
+/// one sees.
 void leaveOut(const PixelMask& ignored, std::vector<std::optional<StereoObservation>>& observed) {
   for (auto& seen : observed) {
     if (!seen) continue;
@@ -41,7 +42,7 @@ void addInstances(const InstanceLabels& labels, std::vector<ScenePoint>& points)
   for (ScenePoint& point : points) point.instance = labels.at(point.uvd_px.x(), point.uvd_px.y());
 }
 
-/// Observations of both, ordered by point; where both have a point, that of the flow.
+/// Merges the observations, ordered by point; where both have a point, that of the flow.
 OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& found) {
   OpticalFlow all{.features = flow.features, .observations = {}};
   std::ranges::set_union(flow.observations, found, std::back_inserter(all.observations), {}, &FlowObservation::point,
@@ -114,7 +115,7 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::measure(const Stereo
   return {flow, std::move(all), std::move(of_world), std::move(camera)};
 }
 
-/// What this frame shows of the own vehicle takes no further part in it: the observations that are left.
+/// Learns the own vehicle, and returns the observations without what this frame shows of it.
 SceneFlowSegmentation::Observations SceneFlowSegmentation::learnOwnVehicle(const MeasuredFrame& measured) {
   Observations of_world = measured.of_world;
   if (measured.camera.status != FrameStatus::kGood) {
@@ -126,7 +127,7 @@ SceneFlowSegmentation::Observations SceneFlowSegmentation::learnOwnVehicle(const
   return of_world;
 }
 
-/// Are frames missing before this one?
+/// True when frames are missing before this one.
 bool SceneFlowSegmentation::isAfterGap(Timestamp stamp) const {
   const CameraTrail& trail = odometry_.trail();
   if (trail.empty()) return false;
@@ -170,7 +171,7 @@ SceneMotionPtr SceneFlowSegmentation::passOver(const StereoFrame& unseen) {
   return newMotion(head, odometry_.passOver(head.stamp));
 }
 
-/// In the memory of one that is no longer in use.
+/// Reuses the buffers of a SceneMotion that nobody holds any more.
 std::shared_ptr<SceneMotion> SceneFlowSegmentation::newMotion(const FrameHead& head, const Odometry& odometry) {
   auto motion = motions_.acquire();
   auto points = std::move(motion->points);
@@ -221,7 +222,7 @@ void SceneFlowSegmentation::addPoints(const Observations& of_world, const std::v
   }
 }
 
-/// Of each point of the scene: does it break the geometry of a static world?
+/// Tells of each point of the scene whether it breaks the geometry of a static world.
 std::vector<bool> SceneFlowSegmentation::testGeometry() const {
   std::vector<bool> violates;
   for (const PointTrack& track : tracks_.observedNow())
@@ -246,7 +247,7 @@ GroundPlane SceneFlowSegmentation::findGround(const std::vector<bool>& violates_
   return ground;
 }
 
-/// Learns from points at rest that were seen at both ends of a window; the disparities remembered follow the offset in
+/// Learns from points at rest that were seen at both ends of a window. The remembered disparities follow the offset in
 /// use.
 void SceneFlowSegmentation::calibrateDisparity() {
   const CameraTrail& trail = odometry_.trail();

@@ -38,7 +38,7 @@ class SceneFlowSegmentation {
 
  private:
   using Observations = std::vector<std::optional<StereoObservation>>;  // one per flow observation
-  /// What a frame tells, given what was known before: the points that are followed, where they are, and how the camera
+  /// Measurements of a frame, given what was known before: the followed points, where they are, and how the camera
   /// moved.
   struct MeasuredFrame {
     OpticalFlow flow;

@@ -32,7 +32,7 @@ MotionComponent piece(const MotionComponent& component, std::span<const Abreast>
   return vehicle;
 }
 
-/// Without the strays.
+/// Width of the members without the strays.
 double width_m(std::span<const Abreast> members) {
   const std::size_t strays = members.size() / kStrays;
   return members[members.size() - 1 - strays].aside_m - members[strays].aside_m;

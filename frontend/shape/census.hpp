@@ -16,14 +16,14 @@ struct PixelWindow {
   int area() const { return empty() ? 0 : width * height; }
 };
 
-/// The census transform of a window of an image (Zabih and Woodfill, "Non-parametric local transforms for computing
-/// visual correspondence", 1994): which of the 24 pixels around are darker, in three planes of eight. Outside the
-/// image, its border counts. Keeps its buffers.
+/// Census transform of a window of an image (Zabih and Woodfill, "Non-parametric local transforms for computing visual
+/// correspondence", 1994): which of the 24 pixels around are darker, in three planes of eight. Outside the image, its
+/// border counts. Keeps its buffers.
 class Census {
  public:
   static constexpr int kBytes = 3, kMostDifferent = 24;
 
-  /// `room`: bytes before and after each row that may be read.
+  /// Computes the planes; `room` bytes before and after each row may be read.
   void compute(const Image& image, const PixelWindow& window, int room);
   const std::uint8_t* row(int byte, int v) const { return planes_[byte].data() + at(v); }
   /// Brightest minus darkest of every other pixel around [gray levels].

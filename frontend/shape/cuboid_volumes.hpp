@@ -13,21 +13,21 @@
 namespace motorcade {
 
 /// Tells where the points of cells are: in the volume that the cuboid may fill, and in the one that it usually fills.
-/// In single precision, eight cells of a row at a time. The disparities outlive it.
+/// Works in single precision, on eight cells of a row at a time. The disparities outlive it.
 class CuboidVolumes {
  public:
   static constexpr std::uint8_t kOutside = 0, kPossible = 1, kUsual = 2;  // in which volume a cell's point lies
   static constexpr double kDisparitySigma_px = 0.25;  // of a dense disparity, in pixels of its level
   static constexpr double kCoarseSigma_px = 1;        // before it is refined
 
-  /// Before disparities of a level are refined: what no refinement may carry into a volume need not be refined. That of
-  /// the finest level is refined but once.
+  /// Standard deviation before disparities of a level are refined: what no refinement may carry into a volume need not
+  /// be refined. Disparities of the finest level are refined but once.
   static constexpr double coarseSigma_px(int level) { return level > 1 ? kCoarseSigma_px : 0.75 * kCoarseSigma_px; }
 
   CuboidVolumes(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
 
-  /// Of the cells of the window that are not outside, says where they lie. Those are outside whose disparity is
-  /// unknown, or wrong by more than `sigma_px` twice over [px of the level].
+  /// Tells where the cells of the window that are not outside lie. Outside are those whose disparity is unknown, or
+  /// would have to be wrong by more than twice `sigma_px` [px of the level].
   void tell(double sigma_px, std::span<std::uint8_t> cells) const;
 
  private:

@@ -18,15 +18,16 @@ struct DisparityMap {
 };
 
 /// Dense disparities of a window of a rectified pair by semi-global matching (Hirschmüller, "Stereo processing by
-/// semiglobal matching and mutual information", 2008): costs are Hamming distances of census transforms, summed along
-/// four directions; a disparity stands where the search from right to left agrees. Cheap because the window and the
-/// range are small. Keeps its buffers; one call at a time.
+/// semiglobal matching and mutual information", 2008). Costs are Hamming distances of census transforms, summed along
+/// four directions; a disparity stands where the search from right to left agrees. It is cheap because the window and
+/// the range are small. Keeps its buffers; one call at a time.
 class DenseDisparity {
  public:
   struct Range {
     int least_px, count;  // disparities least_px ... least_px + count - 1
   };
-  /// The window is cut to where the left image has it; the range to disparities from zero on.
+  /// Computes the disparities. The window is cut to the part that the left image has, the range to disparities from
+  /// zero on.
   DisparityMap operator()(const Image& left, const Image& right, PixelWindow window, Range range);
 
  private:
@@ -34,9 +35,9 @@ class DenseDisparity {
   void markUnknown(std::uint8_t* costs_of_row, int disparity) const;
   void choose(int row, DisparityMap& map);
   void gatherRow(int row);
-  /// Of the right image, the column that a column of the window has at the least disparity, from right_u0_ on.
+  /// Column of the right image for a column of the window at the least disparity, counted from right_u0_.
   int inRight(int column) const { return window_.u0 + column - range_.least_px - right_u0_; }
-  /// Where a row's sums of a disparity are that belong to the first column of the window.
+  /// Index of a row's sums of a disparity at the first column of the window.
   std::ptrdiff_t inSums(int disparity) const { return disparity * stride_of_sums_ + room_; }
 
   PixelWindow window_;

@@ -20,18 +20,18 @@ class EarlierViews {
 
   explicit EarlierViews(const StereoCamera& camera) : camera_(camera) {}
 
-  /// Call for each new frame, seen or not, before anything is asked of those before it.
+  /// Moves on to a new frame, seen or not. Call it before anything is asked of those before it.
   void move(const SE3& T_previous_now);
   /// Adds the frame that was moved to, for the frames to come.
   void add(const Features& features);
-  /// An object's pose in that frame, or in one before it.
+  /// Adds an object's pose in that frame, or in one before it.
   void addPlace(TrackId track, FrameId frame, const SE3& T_cam_body);
 
   /// The object's view in the last frame; empty where it had no place there.
   std::optional<ObjectView::Before> last(TrackId track, const ObjectView& view, const Features& now) const;
   /// The object's newest view in which body and rest are well apart, else the one in which they are farthest.
   std::optional<ObjectView::Before> wellApart(TrackId track, const ObjectView& view, const Features& now) const;
-  /// Null where the object had no place in the frame.
+  /// Returns null where the object had no place in the frame.
   const SE3* place(TrackId track, FrameId frame) const;
 
  private:

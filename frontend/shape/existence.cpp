@@ -20,21 +20,21 @@ constexpr double kSure = 2.5;           // sum of verdicts from which on a body 
 constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
 constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
 
-/// Shares of a verdict among those that tracks get, counted once while it lasts: of tracks whose rows match labels that
-/// move, and of tracks whose rows match none.
+/// Shares of a verdict among those that tracks get, counted once while it lasts: for tracks whose rows match labels
+/// that move, and for tracks whose rows match none.
 struct VerdictShare {
   double of_body, of_nothing;
 };
-/// One for each MotionVerdict, in its order.
+/// Shares of each MotionVerdict, in its order.
 constexpr std::array<VerdictShare, 7> kShares{
     {{0.5, 0.04}, {0.2, 0.1}, {0.06, 0.07}, {0.03, 0.17}, {0.01, 0.06}, {0.01, 0.07}, {0.17, 0.4}}};
 
-/// Three points agree with some motion, whatever they do: a track that never has more is never put to the test.
+/// Most points of a track that is never put to the test: three points agree with some motion, whatever they do.
 constexpr std::size_t kUntested = 3;
-/// Shares of such tracks. Of others they are .98 and .66, which says little and is left out.
+/// Shares of such tracks. Those of others are .98 and .66, which says little and is left out.
 constexpr VerdictShare kUntestedShare{0.02, 0.34};
 
-/// How much likelier a speed is among those of traffic than as an error of something at rest: both are Gaussian.
+/// Log likelihood ratio of a speed among those of traffic against an error of something at rest: both are Gaussian.
 double speedEvidence(double speed_mps, double sigma_mps) {
   const double misfit_at_rest = speed_mps / sigma_mps, spread = kTrafficSpeed_mps / sigma_mps;
   const double variance = 1 + spread * spread;  // of the misfit in traffic
@@ -42,8 +42,8 @@ double speedEvidence(double speed_mps, double sigma_mps) {
   return std::clamp(evidence, kLeastBySpeed, std::min(kMostBySpeed, kMostPerSpeed * speed_mps));
 }
 
-/// The sum takes verdicts as independent, which they are not. By labels, one in six tracks is real however low the sum
-/// is below `kLeast`, and the odds are higher than the sum says above 0.
+/// Probability by the sum of verdicts, which takes them as independent although they are not. By labels, one in six
+/// tracks is real however low the sum is below `kLeast`, and the odds are higher than the sum says above 0.
 double probabilityOf(double log_odds) {
   constexpr double kLeast = -1.6, kPerLogOdds = 1.4;
   return 1 / (1 + exponential(log_odds > 0 ? -kPerLogOdds * log_odds : -std::max(log_odds, kLeast)));
@@ -69,7 +69,7 @@ void Existence::addSettledSpeed(double speed_mps, double sigma_mps) {
   }
 }
 
-/// Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.
+/// Adds a verdict. Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.
 void Existence::addVerdict(FrameId frame, MotionVerdict verdict) {
   if (verdict == MotionVerdict::kUntold) return;
   repeated_ = verdict == last_ ? repeated_ + 1 : 1;

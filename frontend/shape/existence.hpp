@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// What the image around an object's followed points says of one frame.
+/// Verdict of one frame's image around an object's followed points.
 enum class MotionVerdict {
   kMoved,    // nearly all of it moved with the body
   kHardly,   // the same of a point or two, which may well be wrong
@@ -21,30 +21,29 @@ enum class MotionVerdict {
   kUntold    // motion and rest cannot be told apart
 };
 
-/// How sure it is that a track is a body that moves or once moved, by the odds of that against something at rest which
-/// was measured wrongly. Before anything is seen of it, a track is as likely the one as the other.
+/// Probability that a track is a body that moves or once moved, by the odds of that against something at rest which was
+/// measured wrongly. Before anything is seen of it, a track is as likely the one as the other.
 class Existence {
  public:
   Existence();
   /// Call first for a track that was as slow and small as a person when it was spawned: most of these are nothing.
   void doubtSlowBirth();
-  /// An online estimate of the speed. `sigma_mps` holds the errors that all points share. Each estimate gathers what
-  /// was seen before it, so that they are not added up: an object that stops is the one that moved for some time yet.
+  /// Adds an online estimate of the speed; `sigma_mps` holds the errors that all points share. Estimates are not added
+  /// up, as each gathers what was seen before it. An object that stops counts as one that moved for some time yet.
   void addSpeed(double speed_mps, double sigma_mps);
-  /// The same of a settled or final estimate: what moved then has moved for good. Of estimates of rest the surest
-  /// counts.
+  /// Adds a settled or final estimate: what moved then has moved for good. Of estimates of rest the surest counts.
   void addSettledSpeed(double speed_mps, double sigma_mps);
   /// Call in frame order.
   void addVerdict(FrameId frame, MotionVerdict verdict);
 
-  /// The points and patches by which it was followed in a frame in which it was.
+  /// Adds the number of points and patches by which it was followed in a frame.
   void addFollowed(std::size_t points);
 
-  /// Uses all that was seen up to now.
+  /// Returns the probability by all that was seen up to now.
   double probability() const;
-  /// The probability that it was there in a frame, by the verdicts of all frames. It takes the settled motion alone, as
-  /// online estimates may have been wrong. A body that is surely seen in a later frame was there before, even if the
-  /// track has slipped off it since.
+  /// Returns the probability that it was there in a frame, by the verdicts of all frames. It takes the settled motion
+  /// alone, as online estimates may have been wrong. A body that is surely seen in a later frame was there before, even
+  /// if the track has slipped off it since.
   double settledProbability(FrameId frame) const;
 
  private:

@@ -27,7 +27,7 @@ constexpr std::size_t kLeastSharp = 30;
 constexpr double kGoesOnSigmas = 2;  // by which a side goes on beyond the sharp part of it
 constexpr int kEdge = 3;             // cells from the window's edge, where the window cuts the outline
 
-/// Toward the greater coordinates or the lesser.
+/// Sign of a face's outward direction: toward the greater coordinates or the lesser.
 double outward(int face) { return face % 2 == 1 ? 1 : -1; }
 
 /// A point of the surface, with its noise along the ray.
@@ -67,7 +67,7 @@ class FaceMeasurement {
   void addRoad();
   void addPoints();
   void addSurfaces();
-  /// What surface points say of where their face is: a weighted sum.
+  /// Evidence of surface points on where their face is: a weighted sum.
   struct Surface {
     double points = 0, weight = 0, sum = 0, sum_of_squares = 0;
   };
@@ -93,7 +93,7 @@ class FaceMeasurement {
   std::vector<Sample> sampled_, sharp_;  // the surface, and what is known sharply of it
 };
 
-/// The middle of the bottom face lies on the road.
+/// Adds the road: the middle of the bottom face lies on it.
 void FaceMeasurement::addRoad() {
   const Eigen::Vector3d down_body = view_.T_cam_body.rotation().transpose() * view_.ground.normal_cam;
   Vector6d row;
@@ -102,7 +102,7 @@ void FaceMeasurement::addRoad() {
   information_.add(row, value, kRoadSigma_m + kRoadSlope * view_.T_cam_body.translation().norm());
 }
 
-/// The cuboid holds the points by which the object is followed.
+/// Adds the points by which the object is followed: the cuboid holds them.
 void FaceMeasurement::addPoints() {
   if (!view_.points) return;
   for (int axis = 0; axis < 3; ++axis) {
@@ -111,7 +111,7 @@ void FaceMeasurement::addPoints() {
   }
 }
 
-/// A face lies at `at` or beyond.
+/// Adds that a face lies at `at` or beyond.
 void FaceMeasurement::reachTo(int face, double at, double sigma_m) {
   if (outward(face) * (at - view_.box.faces[face]) > 0) information_.add(Vector6d::Unit(face), at, sigma_m);
 }
@@ -129,8 +129,8 @@ void FaceMeasurement::addSurfaces() {
   addExtent();
 }
 
-/// The cuboid holds the surface, all but its outermost parts, where that is known sharply. The flank of a lorry that
-/// goes on where it no longer is ends farther ahead or behind: its sharp part would keep the cuboid as short as itself.
+/// Adds that the cuboid holds the sharply known surface, all but its outermost parts. The flank of a lorry that goes on
+/// where it is no longer sharp ends farther ahead or behind: its sharp part would keep the cuboid as short as itself.
 void FaceMeasurement::addExtent() {
   if (sharp_.size() < kLeastSharp) return;
   for (const int face : {kRear, kFront, kRight, kLeft}) {
@@ -145,7 +145,7 @@ void FaceMeasurement::addExtent() {
   }
 }
 
-/// The ray through a cell meets an upright face at the distance that the disparity says.
+/// Adds a surface point: the ray through its cell meets an upright face at the distance that the disparity says.
 void FaceMeasurement::addSurfacePoint(const SurfacePoint& point, std::array<Surface, 6>& surfaces) {
   const BoxFaces& faces = view_.box.faces;
   if (point.height_m > kHigh * (faces[kTop] - faces[kBottom])) return;
@@ -187,7 +187,7 @@ void FaceMeasurement::addBounds() {
   addBound({top_px, sigma_px, false, true, bounds.v0 < kEdge});
 }
 
-/// Is what lies beside a bound of the outline nearer than the object, or as near?
+/// True when what lies beside a bound of the outline is nearer than the object, or as near.
 bool FaceMeasurement::isCut(int column, int step) const {
   constexpr int kFrom = 3, kTo = 6;    // cells beside the bound; the nearest are often taken for the object's
   constexpr double kBehind_px = -1.5;  // of the level's disparity
@@ -207,7 +207,7 @@ bool FaceMeasurement::isCut(int column, int step) const {
   return 2 * nearer > cells;
 }
 
-/// The cuboid's outermost corner in one direction of the image is seen at the bound.
+/// Adds a bound: the cuboid's outermost corner in one direction of the image is seen there.
 void FaceMeasurement::addBound(const Bound& bound) {
   const auto [bound_px, sigma_px, horizontal, least, cut] = bound;
   double extreme = least ? std::numeric_limits<double>::max() : std::numeric_limits<double>::lowest();

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// Is no part of a cuboid in the left image, even if it is larger by a standard deviation at each side?
+/// True when no part of a cuboid is in the left image, even if it is larger by a standard deviation at each side.
 bool hasLeft(const ObjectBox& box, const SE3& T_cam_body, const StereoCamera& camera) {
   const Eigen::Vector3d half_m = 0.5 * box.size_m + box.size_sigma_m;
   return !projectedBox(box.center_body - half_m, box.center_body + half_m, T_cam_body, camera);

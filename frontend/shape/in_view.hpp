@@ -5,7 +5,7 @@
 
 namespace motorcade {
 
-/// Does the image's border cut an object with these points off? At the left, so does the border of what the right
+/// True when the image's border cuts off an object with these points. At the left, so does the border of what the right
 /// camera sees.
 bool isCutOff(const Box& points, const SE3& T_cam_body, const StereoCamera& camera);
 
@@ -13,7 +13,7 @@ bool isCutOff(const Box& points, const SE3& T_cam_body, const StereoCamera& came
 double shareInImages(const ObjectBox& box, const SE3& T_cam_body, const StereoCamera& camera);
 
 /// Drops rows of objects that have left the images. A predicted one has left when less than half of it is seen. One
-/// that still has points has left when nothing of its cuboid is seen: the points are those of another vehicle then.
+/// that still has points has left when nothing of its cuboid is seen: then the points are those of another vehicle.
 void dropLeft(FrameEstimate& frame, const StereoCamera& camera);
 
 }  // namespace motorcade

@@ -9,7 +9,7 @@
 namespace motorcade {
 namespace {
 
-/// How many of the window's cells a label covers.
+/// Number of the window's cells that a label covers.
 struct Cover {
   int cells = 0, shared = 0;  // shared with the outline
   bool goes_on = false;       // beyond the window

@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// The outline as an instance label has it that agrees with the one found by disparities: more than half of what either
-/// covers is covered by both, which no other label can reach. Empty where there is none, and where the label goes on
-/// beyond the window, as its body would be larger than the object may be.
+/// Outline by the instance label that agrees with the one found by disparities: both cover more than half of what
+/// either covers, which no other label can reach. Empty where there is none, and where the label goes on beyond the
+/// window, as its body would be larger than the object may be.
 std::optional<Outline> labelledOutline(const Outline& outline, const LevelDisparities& disparities,
                                        const InstanceLabels& labels);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLeastNamed = 0.6;  // probability of a kind that is named: the others together are half as likely
 
-/// Speeds of a kind that moves: so many of it are about a mean.
+/// Speeds of a kind that moves: a share of it is about a mean.
 struct Pace {
   double share, mean_mps, sigma_mps;
 };
@@ -38,9 +38,9 @@ struct BelievedKind {
   std::span<const Pace> paces;
 };
 
-/// Shares are of what moves on streets: most cars of KITTI's labels are parked, while nearly all that walk or ride
-/// move. Vans are cars with a line of their own. Widths are between those with and without mirrors, which stand out by
-/// 0.1 to 0.2 m at each side. What is none of these, as the crown of a tree or two objects in one, has any size.
+/// Kinds with their shares of what moves on streets: most cars of KITTI's labels are parked, while nearly all that walk
+/// or ride move. Vans are cars with a line of their own. Widths are between those with and without mirrors, which stand
+/// out by 0.1 to 0.2 m at each side. What is none of these, as the crown of a tree or two objects in one, has any size.
 const std::array<BelievedKind, 6> kKindsOfStreets{
     {{ObjectKind::kCar, {{4.1, 1.8, 1.55}, {0.5, 0.2, 0.15}}, 0.61, kVehicles},
      {ObjectKind::kCar, {{5.2, 2.05, 2.15}, {0.6, 0.25, 0.25}}, 0.1, kVehicles},
@@ -49,7 +49,7 @@ const std::array<BelievedKind, 6> kKindsOfStreets{
      {ObjectKind::kPedestrian, {{0.84, 0.66, 1.76}, {0.25, 0.15, 0.13}}, 0.12, kWalkers},
      {ObjectKind::kUnknown, {{3, 1.5, 1.8}, {3, 1, 1}}, 0.01, kVehicles}}};
 
-/// The origin slides along the body over the frames of a track: it tells little of where rear and front are.
+/// Deviation of the origin along the body: it slides over the frames of a track, and tells little of rear and front.
 constexpr double kSlidingSigma_m = 5;
 
 const std::array<FacePrior, kKindsOfStreets.size()> kPriorsOfStreets = [] {
@@ -58,7 +58,7 @@ const std::array<FacePrior, kKindsOfStreets.size()> kPriorsOfStreets = [] {
   return priors;
 }();
 
-/// An error of the faces that all looks at an object share, which more looks do not make smaller.
+/// Error of the faces that all looks at an object share, so that more looks do not make it smaller.
 struct SharedError {
   BoxFaces sigma_m;
   double share;
@@ -106,7 +106,7 @@ Blurred blurred(const FaceInformation& evidence, const BoxFaces& sigma_m) {
   return result;
 }
 
-/// One kind with one shared error: how likely, and the faces.
+/// One kind with one shared error: its likelihood and the faces.
 struct Component {
   ObjectKind kind;
   double log_weight = 0, weight = 0;
@@ -115,7 +115,7 @@ struct Component {
 };
 using Components = std::array<Component, kKindsOfStreets.size() * kSharedErrors.size()>;
 
-/// The weight is without the share of the kind and the density of the speed.
+/// Component of a kind; its weight is without the share of the kind and the density of the speed.
 Component componentOf(ObjectKind kind, const FacePrior& prior, const Blurred& seen) {
   FaceInformation both = prior.faces;
   both.add(seen.evidence);
@@ -149,7 +149,7 @@ Components componentsOf(const FaceInformation& evidence, double speed_mps) {
   return components;
 }
 
-/// Root mean squares, over all components, of how far a middle and a size along an axis are from a cuboid's.
+/// Root mean squares, over all components, of the distances of a middle and a size along an axis from a cuboid's.
 void setSpread(ObjectBox& box, const Components& components, int axis) {
   const int lower = 2 * axis, upper = lower + 1;
   double of_center = 0, of_size = 0;

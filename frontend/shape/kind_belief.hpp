@@ -4,16 +4,16 @@
 
 namespace motorcade {
 
-/// The cuboid with what is believed of it: its kind, `unknown` unless one is likelier than 0.6, the probability of the
-/// likeliest kind, be it named or not, and the standard deviations that remain.
+/// Cuboid and belief in it: its kind, `unknown` unless one is likelier than 0.6, the probability of the likeliest kind,
+/// named or not, and the standard deviations that remain.
 ///
-/// The belief is a mixture of Gaussians. Each kind has its usual sizes and speeds and a share of what moves on
-/// streets; besides, the object may be something else. All looks at it may be wrong by the same amount: by how far
-/// bodies are from cuboids, or by an outline that holds more than the object, or less. Standard deviations are around
-/// the cuboid, over the whole mixture.
+/// The belief is a mixture of Gaussians. Each kind has its usual sizes and speeds and a share of what moves on streets;
+/// besides, the object may be something else. All looks at it may be wrong by the same amount: as bodies are no
+/// cuboids, or as an outline holds more than the object, or less. Standard deviations are around the cuboid, over the
+/// whole mixture.
 ObjectBox believedBox(const FaceInformation& evidence, double speed_mps);
 
-/// Pedestrian or two-wheeler, the likelier of both, where its probability is `least` or more; `unknown` elsewhere.
+/// The likelier kind of pedestrian and two-wheeler, where its probability is `least` or more; `unknown` elsewhere.
 ObjectKind smallKind(const FaceInformation& evidence, double speed_mps, double least);
 
 }  // namespace motorcade

@@ -11,13 +11,14 @@ struct UsualSize {
   Eigen::Vector3d mean_m, sigma_m;
 };
 
-/// What is known of the faces of a kind before anything is seen.
+/// Prior of the faces of a kind, before anything is seen.
 struct FacePrior {
   FaceInformation faces;
   double log_determinant;
 };
 
-/// The body's origin is within `ahead_sigma_m` of the middle between rear and front, or within a quarter of the length.
+/// Prior of faces around the body's origin. It lies within `ahead_sigma_m` of the middle between rear and front, or
+/// within a quarter of the length.
 FacePrior facePrior(const UsualSize& size, double ahead_sigma_m);
 
 double logDeterminant(const Eigen::LLT<Matrix6d>& llt);

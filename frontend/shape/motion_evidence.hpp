@@ -12,7 +12,8 @@
 
 namespace motorcade {
 
-/// Compares the brightness of cells with that of the frame before, where the body's motion and rest take them from.
+/// Compares the brightness of cells with the frame before, at the places from which motion and rest of the body take
+/// them.
 class MotionEvidence {
  public:
   static constexpr int kPixels = 9;  // around a cell that are compared
@@ -22,12 +23,12 @@ class MotionEvidence {
   MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const ObjectView::Before& before,
                  const StereoCamera& camera, int slack = 0);
 
-  /// By how much better each cell rested than moved with the body [gray levels, added over kPixels]; zero where the two
+  /// Advantage of rest over motion with the body for each cell [gray levels, added over kPixels]; zero where the two
   /// can hardly be told apart. The cells are places in the map, and their disparities are known.
   std::vector<std::int16_t> operator()(std::span<const int> cells) const;
 
  private:
-  /// From rays at a depth to the image of the frame before [px of the level].
+  /// Motion from rays at a depth to the image of the frame before [px of the level].
   struct Motion {
     Eigen::Matrix3f R;
     Eigen::Vector3f t;

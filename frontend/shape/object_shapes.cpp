@@ -29,7 +29,7 @@ constexpr int kIterations = 2;  // of the faces, as what is seen of them depends
 
 double fading(std::int64_t frames) { return power(kFading, static_cast<double>(std::abs(frames))); }
 
-/// That of each look which counts, by its distance in frames.
+/// Fading of each look that counts, by its distance in frames.
 const std::array<double, kMemory_frames + 1>& fadingByFrames() {
   static const auto fadings = [] {
     std::array<double, kMemory_frames + 1> by_frames;
@@ -39,7 +39,7 @@ const std::array<double, kMemory_frames + 1>& fadingByFrames() {
   return fadings;
 }
 
-/// Around the points of an object, in its body frame, without the outermost tenth at each side.
+/// Box around the points of an object, in its body frame, without the outermost tenth at each side.
 std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
                                             const SE3& T_body_cam, double disparity_offset_px) {
   constexpr std::size_t kLeastPoints = 5;
@@ -62,7 +62,7 @@ std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>&
   return Eigen::AlignedBox3d(least, most);
 }
 
-/// The points that an object is found by mostly lie on the face of which the camera sees most.
+/// Evidence of the points by which an object is found: they mostly lie on the face of which the camera sees most.
 FaceInformation nearFaceAtPoints(const ObjectView& view) {
   constexpr double kSigma_m = 0.6;
   FaceInformation near;
@@ -77,7 +77,7 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
   return near;
 }
 
-/// What the frame's earlier stages measured of an object; null where it was not seen.
+/// Measurement of an object by the frame's earlier stages; null where it was not seen.
 const ObjectObservation* observationOf(TrackId track, const FrameMeasurements& measurements) {
   const auto observed = std::ranges::find_if(measurements.objects, [&](const ObjectObservation& o) {
     return o.track == track && o.frame == measurements.head.frame;
@@ -90,7 +90,8 @@ void dropUnlikely(FrameEstimate& frame, double min_existence) {
                 [&](const ObjectEstimate& object) { return object.existence_probability < min_existence; });
 }
 
-/// An object that was known before another one may have the other's points on it: how it moved since `before` tells.
+/// Cuboids of objects that were known before this one, which may have their points on it. How each moved since `before`
+/// tells.
 std::vector<ObjectView::Other> cuboidsBeside(TrackId track, const std::vector<ObjectEstimate>& objects,
                                              const SE3& T_world_cam, const std::optional<ObjectView::Before>& before,
                                              const EarlierViews& earlier) {
@@ -185,7 +186,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   setBox(object, believedBox(shape.evidence, shape.speed_mps), view.T_cam_body);
 }
 
-/// How the object stands to the camera, and what is believed of its cuboid. Its shape becomes that of this frame.
+/// View of the object and belief in its cuboid. Its shape becomes that of this frame.
 ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inputs, const FrameEstimate& frame,
                                 Shape& shape) {
   const SceneMotion& scene = *inputs.scene;
@@ -227,8 +228,8 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   return view;
 }
 
-/// Pedestrian or two-wheeler, where the object may well be one. It is looked for in a small volume then: an outline
-/// that outgrows it tells of a car soon enough, while that of a person in a car's volume takes in what is beside.
+/// Kind of a small object where it may well be one: pedestrian or two-wheeler. It is then looked for in a small volume.
+/// An outline that outgrows it tells of a car soon enough; that of a person in a car's volume takes in what is beside.
 ObjectKind ObjectShapes::smallKindOf(const ObjectView& view, const ObjectObservation* observed,
                                      const Shape& shape) const {
   constexpr double kFastest_mps = 8, kLongest_m = 1.8;
@@ -239,7 +240,8 @@ ObjectKind ObjectShapes::smallKindOf(const ObjectView& view, const ObjectObserva
   return smallKind(shape.evidence, shape.speed_mps, cut_off ? kRather : kMayWellBe);
 }
 
-/// What the outline says of the faces, and `view.box` with it; empty, and the box as it was, where that makes no sense.
+/// Evidence of the outline on the faces, which also updates `view.box`. Empty, with the box as it was, where that makes
+/// no sense.
 std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectView& view, const Shape& shape) const {
   const BoxEstimate before = view.box;
   const std::vector<SurfacePoint> surface = surfacePoints(seen.disparities, seen.outline, view, camera_);
@@ -257,7 +259,7 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
   return look;
 }
 
-/// None of its points was followed, but its outline was found.
+/// Marks an object whose outline was found although none of its points was followed.
 void ObjectShapes::markSeen(ObjectEstimate& object, const DenseEvidence& evidence) {
   object.state = evidence.state;
   object.points = evidence.cells;
@@ -275,7 +277,7 @@ std::vector<FrameEstimate> ObjectShapes::finish(std::vector<FrameEstimate> final
   return finals;
 }
 
-/// All looks of these frames first, as each frame's cuboid gathers what is around it.
+/// Completes final frames. All their looks come first, as each frame's cuboid gathers what is around it.
 void ObjectShapes::complete(std::vector<FrameEstimate>& finals) {
   for (const FrameEstimate& final : finals) addSettledSpeeds(final);
   for (const FrameEstimate& final : finals) moveLooks(final);
@@ -289,7 +291,7 @@ void ObjectShapes::addSettledSpeeds(const FrameEstimate& frame) {
                                               speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
 }
 
-/// From what was seen of each object before and after the frame.
+/// Gathers each object's shape from what was seen of it before and after the frame.
 void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
   for (ObjectEstimate& object : frame.objects) {
     const auto shape = shapes_.find(object.track);
@@ -305,7 +307,7 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
   dropUnlikely(frame, params_.min_existence);
 }
 
-/// Into the body frame of the final estimate.
+/// Moves looks into the body frame of the final estimate.
 void ObjectShapes::moveLooks(const FrameEstimate& final) {
   for (const ObjectEstimate& object : final.objects) {
     const auto shape = shapes_.find(object.track);
@@ -327,7 +329,7 @@ FaceInformation ObjectShapes::evidenceAround(const Shape& shape, FrameId frame) 
   return evidence;
 }
 
-/// Looks that no final estimate will ask for any more.
+/// Forgets looks that no final estimate will ask for any more.
 void ObjectShapes::forgetGone(const Estimates& estimates) {
   if (estimates.finals.empty()) return;
   const FrameId oldest{estimates.finals.back().head.frame.value - kMemory_frames};

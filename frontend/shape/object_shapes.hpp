@@ -18,7 +18,7 @@
 namespace motorcade {
 
 /// The stage `object shapes`: looks densely at the image around each object, which gives its outline in this frame, and
-/// gathers what the outlines say of its cuboid. Call in frame order: it remembers the objects.
+/// gathers the outlines' evidence on its cuboid. Call in frame order: it remembers the objects.
 class ObjectShapes {
  public:
   struct Params {
@@ -27,26 +27,26 @@ class ObjectShapes {
   ObjectShapes(const Params& params, const StereoCamera& camera)
       : params_(requireValid(params)), camera_(camera), sight_(camera), earlier_(camera) {}
 
-  /// What the frame's earlier stages made.
+  /// Results of the frame's earlier stages.
   struct Inputs {
     FeaturesPtr features;
     SceneMotionPtr scene;
     FrameMeasurementsPtr measurements;
   };
-  /// The estimates with cuboids, kinds, image boxes and masks. Settled and final ones get theirs from what was seen
-  /// before and after their frame.
+  /// Returns the estimates with cuboids, kinds, image boxes and masks. Settled and final ones get theirs from what was
+  /// seen before and after their frame.
   EstimatesPtr operator()(const Inputs& inputs, const EstimatesPtr& estimates);
-  /// The same for the frames that were still in the window when the drive ended.
+  /// Completes the frames that were still in the window when the drive ended.
   std::vector<FrameEstimate> finish(std::vector<FrameEstimate> finals);
 
  private:
-  /// What one frame said of an object's faces, in the body frame of that frame's online estimate, and of its final
-  /// one from then on.
+  /// Evidence of one frame on an object's faces. It is in the body frame of that frame's online estimate, and of its
+  /// final one from then on.
   struct Look {
     FaceInformation faces;
     SE3 T_cam_body;
   };
-  /// Of a frame in which an outline that moves as predicted was found, but none of the object's points.
+  /// Evidence of a frame in which an outline that moves as predicted was found, but none of the object's points.
   struct DenseEvidence {
     ObjectState state;
     int cells;

@@ -10,11 +10,11 @@
 
 namespace motorcade {
 
-/// What a stereo pair shows of an object.
+/// View of an object in a stereo pair.
 struct Sight {
   LevelDisparities disparities;
   Outline outline;
-  /// The same as instance labels have it, with its legs and wheels; empty where none agree.
+  /// The outline by instance labels, with legs and wheels; empty where none agree.
   std::optional<Outline> labelled{};
   const Outline& mask() const { return labelled ? *labelled : outline; }
 };
@@ -26,7 +26,7 @@ class ObjectSight {
 
   /// The finest of so many levels of the pyramid at which the window has few cells.
   int levelOf(const ObjectView& view, int levels) const;
-  /// At `view.level`. Empty where nothing, or hardly anything, is seen of the object.
+  /// Looks at `view.level`. Empty where nothing, or hardly anything, is seen of the object.
   std::optional<Sight> operator()(const ObjectView& view, const Features& features);
 
  private:

@@ -5,7 +5,7 @@
 namespace motorcade {
 namespace {
 
-/// Cells between the viewed body and what goes along with another one, in the earlier image.
+/// Distance in cells, in the earlier image, between the viewed body and what goes along with another one.
 double cellsApart(const ObjectView& view, const SE3& T_before_cam, const StereoCamera& camera) {
   const auto moved = camera.project(view.well_before->T_before_body.translation()),
              along = camera.project(T_before_cam * view.T_cam_body.translation());

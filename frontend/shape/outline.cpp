@@ -17,7 +17,7 @@ constexpr double kLeastUsual = 0.7;               // of a piece's cells, so that
 constexpr std::uint8_t kOutside = CuboidVolumes::kOutside, kPossible = CuboidVolumes::kPossible,
                        kUsual = CuboidVolumes::kUsual;
 
-/// A cell is what most of its 3x3 neighbors and itself are.
+/// Smooths an outline: a cell becomes what most of its 3x3 neighbors and itself are.
 void smooth(Outline& outline) {
   const int width = outline.window.width, height = outline.window.height;
   std::vector<std::uint8_t> across(static_cast<std::size_t>(width) * (height + 2), 0);  // how many of three in a row
@@ -43,7 +43,7 @@ void smooth(Outline& outline) {
   }
 }
 
-/// The connected pieces of an outline: of each cell the number of its piece.
+/// Connected pieces of an outline: the number of its piece for each cell.
 class Pieces {
  public:
   Pieces(const Outline& outline, const DisparityMap& map)
@@ -78,7 +78,7 @@ class Pieces {
     }
     return true;
   }
-  /// Negative outside.
+  /// Piece of a cell; negative outside.
   int at(int row, int column) const { return piece_of_[placeOf(row) + column]; }
 
  private:
@@ -121,7 +121,7 @@ void dropPieces(Outline& outline, const DisparityMap& map) {
     }
 }
 
-/// The first and the last of so many cells that are inside; first beyond last where there is none.
+/// First and last of so many cells that are inside; first beyond last where there is none.
 template <class IsInside>
 std::pair<int, int> spanOf(int cells, const IsInside& is_inside) {
   int first = 0, last = cells - 1;
@@ -130,7 +130,8 @@ std::pair<int, int> spanOf(int cells, const IsInside& is_inside) {
   return first < cells ? std::pair(first, last) : std::pair(cells, -1);
 }
 
-/// Windows and smooth paint give no disparity, or a wrong one: what has cells of the object on all four sides is its.
+/// Fills gaps: a cell with cells of the object on all four sides is its own. Windows and smooth paint give no
+/// disparity, or a wrong one.
 void fillGaps(Outline& outline) {
   const auto rows = outline.spansOfRows(), columns = outline.spansOfColumns();
   for (int row = 0; row < outline.window.height; ++row)
@@ -139,7 +140,7 @@ void fillGaps(Outline& outline) {
         outline.inside[static_cast<std::size_t>(row) * outline.window.width + column] = 1;
 }
 
-/// The windows that are compared make objects wider than they are; at the left, so does what only the left image sees.
+/// Takes off the fringe that the compared windows add to objects; at the left, so does what only the left image sees.
 void takeOffFringe(Outline& outline) {
   const auto rows = outline.spansOfRows();
   for (int row = 0; row < outline.window.height; ++row) {

@@ -15,12 +15,12 @@
 
 namespace motorcade {
 
-/// How an object stands to the camera in one frame, as far as it is known before its outline.
+/// View of an object by the camera in one frame, as far as it is known before its outline.
 struct ObjectView {
-  /// Cells between a body that moved and what rests, in the image of an earlier frame: the two can be told apart
-  /// although each estimate may be off by a cell.
+  /// Cells between a body that moved and what rests, in the image of an earlier frame, from which on the two can be
+  /// told apart. Each estimate may be off by a cell.
   static constexpr double kWellApart = 6;
-  /// Width of a small body in cells. Someone evenly dressed looks the same until gone by it. 0 of other bodies.
+  /// Width of a small body in cells; 0 of other bodies. Someone evenly dressed looks the same until gone by it.
   double width = 0;
   SE3 T_cam_body;
   BoxEstimate box;
@@ -31,7 +31,7 @@ struct ObjectView {
   struct Other {
     SE3 T_body_cam;
     Eigen::Vector3d least, most;
-    /// Takes what goes along with it from the camera now to that of the earlier frame. Only objects that were known
+    /// Motion of what goes along with it from the camera now to that of the earlier frame. Only objects that were known
     /// before this one have it.
     std::optional<SE3> T_before_cam{};
   };
@@ -53,7 +53,7 @@ struct ObjectView {
 struct LevelDisparities {
   int level = 0;
   DisparityMap map;
-  /// Of a cell [px of full size]; empty where the images agree on none.
+  /// Disparity of a cell [px of full size]; empty where the images agree on none.
   std::optional<double> disparity_px(int column, int row) const {
     const float d = map.at(column, row);
     if (d == DisparityMap::kNone) return std::nullopt;
@@ -64,8 +64,8 @@ struct LevelDisparities {
   double v_px(int row) const { return fromLevel(static_cast<float>(map.window.v0 + row), level); }
 };
 
-/// Which cells of the window show the object: those that lie within its cuboid, as far as both are known, above the
-/// road. Gaps are filled and pieces beside it dropped.
+/// Cells of the window that show the object: those above the road that lie within its cuboid, as far as both are known.
+/// Gaps are filled and pieces beside it dropped.
 struct Outline {
   PixelWindow window;  // of the cells
   std::vector<std::uint8_t> inside;
@@ -81,15 +81,15 @@ struct Outline {
   bool at(int column, int row) const { return inside[static_cast<std::size_t>(row) * window.width + column] != 0; }
 };
 
-/// The cells of the window that may show the object, as far as coarse disparities tell: their places in the map.
+/// Cells of the window that may show the object, as far as coarse disparities tell: their places in the map.
 std::vector<int> cellsInReach(const LevelDisparities& disparities, const ObjectView& view, const StereoCamera& camera);
 
-/// Of the cells in reach, with their disparities refined.
+/// Finds the outline among the cells in reach, with their disparities refined.
 Outline findOutline(const LevelDisparities& disparities, std::span<const int> cells, const ObjectView& view,
                     const StereoCamera& camera);
 
-/// Does the brightness of an outline say that what it shows moved with the body since the frame before, rather than
-/// rested? No where the two can hardly be told apart.
+/// True when the brightness of an outline says that it moved with the body since the frame before, rather than rested;
+/// false where the two can hardly be told apart.
 bool movesWithBody(const Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
                    const StereoCamera& camera);
 

@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// A vehicle's body, down to where one sees the road below it, and its wheels, away from its ends.
+/// Volumes of a vehicle's body, down to where one sees the road below it, and of its wheels, away from its ends.
 std::vector<Eigen::AlignedBox3d> bodyAndWheels(const BoxEstimate& box) {
   constexpr double kClearance_m = 0.25, kFromEnd_m = 0.45, kDiameter_m = 0.65, kThickness_m = 0.25,
                    kRoundedCorner_m = 0.15;
@@ -36,7 +36,7 @@ void giveFringeBack(Outline& outline) {
       outline.inside[static_cast<std::size_t>(row) * outline.window.width + first - 1] = 1;
 }
 
-/// Below the cells that are inside.
+/// Adds the low parts of the object below the cells that are inside.
 void addLowParts(Outline& outline, const LevelDisparities& disparities, const ObjectView& view,
                  const StereoCamera& camera) {
   const auto columns = outline.spansOfColumns();

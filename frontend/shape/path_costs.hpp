@@ -7,9 +7,9 @@
 namespace motorcade {
 
 /// A byte for each disparity of each pixel of a window. Pixels side by side on a line (a row of the window, or a
-/// column) make blocks of kByteLanes, and a block has its disparities one after the other: the arithmetic is that of
-/// vectors, with nothing to do across their lanes. Blocks are full, and lines up to a multiple of kByteLanes are there;
-/// what is beyond the window may hold anything.
+/// column) make blocks of kByteLanes, and a block has its disparities one after the other. So vector arithmetic never
+/// crosses lanes. Blocks are full, and lines exist up to a multiple of kByteLanes; what is beyond the window may hold
+/// anything.
 class DisparityBlocks {
  public:
   void resize(int lines, int pixels, int disparities);
@@ -29,8 +29,8 @@ class DisparityBlocks {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Of semi-global matching: the sum over paths of the least cost of each disparity of each pixel, with that of the
-/// cheapest way to the pixel before taken off. Keeps its buffers; one call at a time.
+/// Path costs of semi-global matching: the sum over paths of the least cost of each disparity of each pixel, minus that
+/// of the cheapest way to the pixel before. Keeps its buffers; one call at a time.
 class PathCosts {
  public:
   static constexpr int kMostCost = 24;       // of a pixel at a disparity

@@ -12,7 +12,7 @@ struct Interval {
   double begin, end;
 };
 
-/// Where a ray, origin + t * direction, is within a box; empty intervals end before they begin.
+/// Interval of a ray, origin + t * direction, within a box; empty intervals end before they begin.
 inline Interval insideOf(const Eigen::Vector3d& least, const Eigen::Vector3d& most, const Eigen::Vector3d& origin,
                          const Eigen::Vector3d& direction) {
   Interval inside{0, 1e9};

@@ -12,11 +12,11 @@ namespace motorcade {
 namespace {
 
 constexpr double kMaxSpeedDifference_mps = 1.5;  // of two objects on one vehicle, where their frames' origins are
-// By which they may exceed one vehicle or one person at most, however uncertain their positions are.
+// Excess of two objects over one vehicle or one person at most, however uncertain their positions are.
 constexpr double kMaxSlack_m = 2, kMaxSlackOfPerson_m = 0.5;
 constexpr double kSigmas = 2;  // that slack, and what uncertain speeds add, in standard deviations
 
-/// Vehicles do not overlap: most points of the one lie within the other.
+/// True when most points of the one lie within the other, as vehicles do not overlap.
 bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObject& other) {
   constexpr double kMargin_m = 0.3, kMost = 0.7;  // a margin, as a face alone has no depth
   Eigen::AlignedBox3d box = other.core(SE3{});
@@ -27,8 +27,9 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
   return static_cast<double>(inside) > kMost * static_cast<double>(one.points.size());
 }
 
-/// Points behind the front of a lorry or a bus, as the camera sees it, lie on its flank if they move alike and in its
-/// track. A car that follows is hidden, or a gap shows between the two. A nearer object may be a car before the lorry.
+/// True when the younger lies on the flank of the older one. Points behind the front of a lorry or a bus, as the camera
+/// sees it, lie on its flank if they move alike and in its track. A car that follows is hidden, or a gap shows between
+/// the two. A nearer object may be a car before the lorry.
 bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const TrackedObject& younger,
              const Eigen::AlignedBox3d& other, double slack_m) {
   constexpr double kHigherThanAVan_m = 2.3;
@@ -63,8 +64,8 @@ bool isInView(const TrackedObject& object, const StereoCamera& camera) {
   return uvd_px && camera.inLeftImage(uvd_px->x(), uvd_px->y());
 }
 
-/// A guess gives way, and an object that has left the view to one in it: the last points of a trailer that we pass are
-/// on its truck.
+/// True when the younger stays: a guess gives way, and an object that has left the view gives way to one in it. The
+/// last points of a trailer that we pass are on its truck.
 bool youngerStays(const TrackedObject& older, const TrackedObject& younger, const StereoCamera& camera) {
   if (older.isGuess() != younger.isGuess()) return older.isGuess();
   if (!younger.life.reported()) return false;

@@ -7,9 +7,9 @@
 
 namespace motorcade {
 
-/// Of two objects on one vehicle the one that was reported stays, the older if both were or neither was, and takes the
-/// points of the other, which ends; not where the background is seen between them. If both were reported and the older
-/// one's origin has left the view, the younger stays. `objects` are ordered by track.
+/// Merges two objects on one vehicle, unless the background is seen between them. The reported one stays, or the older
+/// if both were reported or neither was; it takes the points of the other, which ends. If both were reported and the
+/// older one's origin has left the view, the younger stays. `objects` are ordered by track.
 void mergeDuplicates(std::vector<TrackedObject>& objects, const SeeThrough& see_through, const StereoCamera& camera);
 
 }  // namespace motorcade

@@ -8,16 +8,16 @@
 
 namespace motorcade {
 
-/// Where an instance label lies in the left image.
+/// Place of an instance label in the left image.
 struct InstanceRegion {
   std::uint16_t label;
   Box box;
 };
 
-/// The upper part of a region, which of a person is trunk and head: legs swing.
+/// Upper part of a region, which of a person is trunk and head: legs swing.
 Box upperPart(const Box& region);
 
-/// The region of each label, ordered by label. Takes one look at each pixel.
+/// Region of each label, ordered by label. Takes one look at each pixel.
 std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels);
 
 }  // namespace motorcade

@@ -26,7 +26,7 @@ double medianDisparity_px(const std::vector<int>& points, const SceneMotion& sce
   return regionOf(seen)->disparity_px;
 }
 
-/// The velocity of a component, expected to be as small as a standard deviation, and how well both agree: twice the
+/// Velocity of a component, expected to be as small as a standard deviation, and how well both agree: twice the
 /// negative logarithm of their likelihood.
 struct ExpectedVelocity {
   Eigen::Vector3d velocity_mps;
@@ -43,7 +43,7 @@ struct ExpectedVelocity {
   }
 };
 
-/// Along the line of sight the flow tells little of a velocity. It is taken for that of a walk, or else of a ride.
+/// Expects a walk's speed along the line of sight, or else a ride's, as the flow tells little of the velocity there.
 void expectUsual(MotionComponent& component) {
   constexpr double kWalk_mps = 1.5, kRide_mps = 5;
   const ExpectedVelocity walk(component, kWalk_mps), ride(component, kRide_mps);
@@ -104,7 +104,7 @@ std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const Candidat
   return mover;
 }
 
-/// Is a point as far away as the person, and does it move alike as far as is known?
+/// True when a point is as far away as the person, and moves alike as far as is known.
 bool LabelledWalkers::mayBeOn(const SceneFlow& person, const ScenePoint& point) const {
   constexpr double kDeep_m = 0.5, kSigmas = 2, kAlikeChi2 = 11.3;  // 3 degrees of freedom: 99 %
   const double z_m = camera_.triangulate(point.uvd_px).z(), noise_m = z_m * point.sigma_px.z() / point.uvd_px.z();
@@ -115,7 +115,7 @@ bool LabelledWalkers::mayBeOn(const SceneFlow& person, const ScenePoint& point) 
   return dv.dot(C.inverse() * dv) < kAlikeChi2;
 }
 
-/// A label may show less than all of somebody, but not more.
+/// True for a region of a person's size. A label may show less than all of somebody, but not more.
 bool LabelledWalkers::isLikeAPerson(const InstanceRegion& region, double disparity_px) const {
   constexpr double kLeast_m = 0.5, kNoise_m = 0.2;
   const double m_per_px = camera_.baseline_m / disparity_px;
@@ -124,8 +124,8 @@ bool LabelledWalkers::isLikeAPerson(const InstanceRegion& region, double dispari
   return height_m > kLeast_m && height_m < kPerson.height_m + kNoise_m && width_m < kPerson.length_m + kNoise_m;
 }
 
-/// Is what lies to both sides of the region, along its upper part, of another depth than the region itself? Beside a
-/// label that is late, or lies across a body, the body goes on, and beside one on a wall the wall.
+/// True when what lies to both sides of the region, along its upper part, has another depth than the region itself.
+/// Beside a label that is late, or lies across a body, the body goes on; beside one on a wall the wall does.
 bool LabelledWalkers::endsWhereItsBodyDoes(const InstanceRegion& region, double disparity_px,
                                            const SceneMotion& scene) {
   constexpr double kMargin_px = 4, kLeastWide_px = 12;

@@ -12,14 +12,14 @@
 namespace motorcade {
 
 /// Looks for people on foot, and on bicycles that come or go, where instance labels show what may be one. Corners are
-/// few on clothes, and none of them may be followed for long; what a label shows can be looked for as a whole. A label
-/// proves nothing by itself: what does not move surely is left alone, whatever it shows.
+/// few on clothes, and none may be followed for long; what a label shows can be looked for as a whole. A label proves
+/// nothing by itself: what does not surely move is left alone, whatever it shows.
 class LabelledWalkers {
  public:
   /// `past` outlives it.
   LabelledWalkers(const LookBack& past, const StereoCamera& camera) : camera_(camera), flow_of_(past, camera) {}
 
-  /// Somebody who walks or rides, and in how many frames and for how long that was seen.
+  /// Somebody who walks or rides, with the number of frames and the time over which that was seen.
   struct Mover {
     MotionComponent component;
     int frames = 0;
@@ -31,10 +31,10 @@ class LabelledWalkers {
     std::vector<int> points;  // indices into `SceneMotion::points`
     double disparity_px = 0;  // the points' median
   };
-  /// The candidates of a frame, ordered by label; where labels are so many that they cannot be, some of them, and
-  /// others in the next frame. `taken` points are those of known objects, which are no candidates.
+  /// Candidates of a frame, ordered by label. Where labels are too many, some of them are candidates, and others in the
+  /// next frame. `taken` points are those of known objects, which are no candidates.
   std::vector<Candidate> candidates(const SceneMotion& scene, const std::vector<bool>& taken) const;
-  /// The mover that a candidate is; empty where nobody moves surely.
+  /// Mover that a candidate is; empty where nobody surely moves.
   std::optional<Mover> operator()(const Candidate& candidate, const SceneMotion& scene, const SE3& T_world_cam) const;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace motorcade {
 
-/// Where an object stands: tentative -> confirmed <-> lost, and from each of them -> ended.
+/// Phase of an object: tentative -> confirmed <-> lost, and from each of them -> ended.
 enum class Phase {
   kTentative,  // spawned from a moving component; not reported yet
   kConfirmed,  // reported, and measured in the newest frame
@@ -12,11 +12,11 @@ enum class Phase {
   kEnded,      // removed at the end of the frame
 };
 
-/// An object's phase and the counts that its transitions hang on. Each frame either `observe`s or `miss`es it.
+/// Phase of an object and the counts that decide its transitions. Each frame either `observe`s or `miss`es it.
 class LifeCycle {
  public:
   Phase phase() const { return phase_; }
-  /// It was confirmed at some time, so that the back-end knows of it.
+  /// True when it was confirmed at some time, so that the back-end knows of it.
   bool reported() const { return reported_; }
   /// Frames with a measurement, that of its spawning included.
   int observations() const { return observations_; }
@@ -34,7 +34,7 @@ class LifeCycle {
     ++missed_;
     if (phase_ == Phase::kConfirmed) phase_ = Phase::kLost;
   }
-  /// Call after `observe`, once.
+  /// Confirms the object; call once, after `observe`.
   void confirm() {
     assert(phase_ == Phase::kTentative && missed_ == 0);
     phase_ = Phase::kConfirmed;

@@ -10,7 +10,7 @@
 namespace motorcade {
 namespace {
 
-/// Points that the object was given, but that were not measured to move with it yet.
+/// Drops points that the object was given, but that were not measured to move with it yet.
 void dropNew(TrackedObject& object) {
   std::erase_if(object.points, [&](const BodyPoint& point) {
     return std::ranges::none_of(object.backlog, [&](const ObjectObservation& o) {
@@ -42,7 +42,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
     now = earlier->scene->head.stamp;
     auto observation = observe(*earlier, body, then, later);
     if (!observation || isTaken(*earlier, observation->T_cam_body, object.born_slow)) return;
-    // What was only near the object then is evidence of it, but surely a point of it only if it was followed later.
+    // A point only near the object then is evidence of it, but surely a point of it only if it was followed later.
     std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
     const bool stands = object.born_slow && then.speed_mps() < kSlowestWalk_mps;
     if (stands && observation->measured.empty()) return;
@@ -50,7 +50,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
   }
 }
 
-/// Where the object was in an earlier frame; `then` and `later` become what is known of it there.
+/// Looks for the object in an earlier frame; `then` and `later` become what is known of it there.
 std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, TrackedObject& object,
                                                    ObjectKinematics& then, MeasuredPoints& later) const {
   const PosePrior prior{earlier.T_world_cam.inverse() * then.pose(), inverse(then.poseCovariance())};
@@ -69,7 +69,7 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, Tra
   return observation;
 }
 
-/// Was a body reported there, so that one would be reported twice? A tall one reaches far from its body's origin.
+/// True when a body was reported there, so that one would be reported twice. A tall one reaches far from its origin.
 bool LookBack::isTaken(const PastScene& scene, const SE3& T_cam_body, bool small) {
   // Between the origins of two bodies on one vehicle, and on one person.
   constexpr double kOnVehicle_m = 2.5, kAside_m = 1.2, kOnPerson_m = 0.8;

@@ -11,7 +11,7 @@
 
 namespace motorcade {
 
-/// Looks for an object in the frames before it was spawned: its points were followed for some frames by then, and tell
+/// Looks for an object in the frames before it was spawned. Its points were followed for some frames by then, and tell
 /// where it was.
 class LookBack {
  public:
@@ -19,11 +19,11 @@ class LookBack {
   LookBack(int frames, int confirmed_after, const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
       : frames_(frames), kept_(frames + confirmed_after), motion_(params, camera) {}
 
-  /// Puts what is found before the object's backlog; ends at the first frame in which it is not found, or in which
-  /// another object was reported where it is.
+  /// Puts the observations found before the object's backlog. It ends at the first frame in which the object is not
+  /// found, or in which another object was reported where it is.
   void operator()(TrackedObject& object, Timestamp now, const ObjectKinematics::Params& kinematics) const;
 
-  /// No motion links the frames that come to those before.
+  /// Forgets the past frames, as no motion links the next ones to them.
   void forget() { past_.clear(); }
   /// Call at the end of each frame, with the observations that it reported, and their objects.
   void remember(const SceneMotionPtr& scene, const SE3& T_world_cam, const std::vector<ObjectObservation>& reported,

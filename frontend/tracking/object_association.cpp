@@ -51,7 +51,7 @@ double cost(const TrackedObject& object, const SceneMotion& scene, const MotionC
   return chi2 - kSharedPointsBonus * shared;
 }
 
-/// A vehicle may fall into several components: gives those that are left over to the object whose points they hold.
+/// Gives left-over components to the object whose points they hold, as a vehicle may fall into several components.
 void claimRest(const std::vector<TrackedObject>& objects, const SceneMotion& scene, std::vector<int>& object_of) {
   for (std::size_t s = 0; s < scene.components.size(); ++s) {
     if (scene.components[s].label != PointLabel::kMoving || object_of[s] >= 0) continue;

@@ -9,10 +9,10 @@
 
 namespace motorcade {
 
-/// Global nearest neighbor: which moving component is which object, one to one at least total cost, in the world frame.
-/// For each component of `scene` the index of its object, or -1: not moving, or new. Components beyond the one-to-one
-/// match that consist of an object's points are given to it as well. None is given to an object from which the
-/// background parts it.
+/// Global nearest neighbor: matches moving components and objects one to one, at least total cost, in the world frame.
+/// Returns for each component of `scene` the index of its object, or -1: not moving, or new. Further components that
+/// consist of an object's points are given to it as well. None is given to an object from which the background parts
+/// it.
 std::vector<int> associateObjects(const std::vector<TrackedObject>& objects, const SceneMotion& scene,
                                   const SE3& T_world_cam, const StereoCamera& camera);
 

@@ -16,9 +16,9 @@ double diagonal_px(const Box& box) { return hypotenuse(box.right_px - box.left_p
 
 }  // namespace
 
-/// A few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own with wrong
-/// disparities. One that is cut off by the image's border, or at the left by that of the right image, reaches beyond
-/// its points.
+/// True when a few points that seem to lie behind a vehicle with many, and within its outline, are the vehicle's own
+/// with wrong disparities. A vehicle that is cut off by the image's border, or at the left by that of the right image,
+/// reaches beyond its points.
 bool ObjectConfirmation::looksThrough(const ObjectObservation& few, const ObjectObservation& many) const {
   constexpr double kMargin = 0.25, kMaxMargin_px = 30;  // of the outline's width and height
   constexpr double kBorder_px = 80;
@@ -35,8 +35,8 @@ bool ObjectConfirmation::looksThrough(const ObjectObservation& few, const Object
          few.box.bottom_px < many.box.bottom_px + dv;
 }
 
-/// People walk at 1.5 m/s, of which a few standard deviations are all there is: they are known by the way they go, and
-/// by going on the ground. Errors of matching are often high up, on facades and in trees.
+/// True for a person who surely walks. People walk at 1.5 m/s, which is only a few standard deviations, so the way they
+/// go, on the ground, must tell. Errors of matching are often high up, on facades and in trees.
 bool ObjectConfirmation::walksSurely(const TrackedObject& object, double traveled_m, const GroundPlane& ground) const {
   constexpr double kSpeedSigmas = 3, kTravel_m = 0.5, kChest_m = 1.5;
   constexpr int kObserved = 4;

@@ -19,7 +19,7 @@ class ObjectConfirmation {
   };
   ObjectConfirmation(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// By the newest observation of the object's backlog, which is of this frame. `reported` are this frame's
+  /// Decides by the newest observation of the object's backlog, which is of this frame. `reported` are this frame's
   /// observations of other objects.
   bool operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported,
                   const GroundPlane& ground) const;

@@ -29,7 +29,7 @@ class ObjectKinematics {
   Eigen::Vector3d velocityWorld_mps() const { return state_.velocityWorld_mps(); }
   double speed_mps() const { return state_.twist.head<3>().norm(); }
   double speedSigma_mps() const;
-  /// Of the position, over all axes together.
+  /// Standard deviation of the position, over all axes together.
   double positionSigma_m() const;
   Matrix6d poseCovariance() const { return state_.poseCovariance(); }
   Eigen::Matrix3d velocityCovariance() const { return state_.velocityCovariance(); }
@@ -41,13 +41,14 @@ class ObjectKinematics {
   /// their correlation.
   void acceptPose(const SE3& T_world_body, const Matrix6d& covariance);
 
-  /// The point `p_body` of the body was observed at `p_world`; `sigma_m` along each axis.
+  /// Takes in that the point `p_body` of the body was observed at `p_world`; `sigma_m` along each axis.
   void fusePosition(const Eigen::Vector3d& p_body, const Eigen::Vector3d& p_world, double sigma_m);
 
-  /// Velocity along the body's x axis, and the body upright: `up_world` is the road's normal, away from the ground.
+  /// Takes in that the velocity is along the body's x axis and the body upright: `up_world` is the road's normal, away
+  /// from the ground.
   void fuseVehicleModel(const Eigen::Vector3d& up_world, const Params& params);
 
-  /// Another choice of body axes: T_world_body <- T_world_body * T_body_new.
+  /// Changes the body axes: T_world_body <- T_world_body * T_body_new.
   void changeBodyFrame(const SE3& T_body_new);
 
  private:

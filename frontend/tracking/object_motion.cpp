@@ -243,7 +243,7 @@ ObjectObservation ObjectMotionEstimator::measureEncounter(const TrackedObject& o
   return observation;
 }
 
-/// One Kalman step per point, the pose taken as known.
+/// Refines each point by one Kalman step, the pose taken as known.
 void ObjectMotionEstimator::refinePoints(TrackedObject& object, const std::vector<Observation>& inliers) const {
   for (const auto& s : inliers) {
     BodyPoint& p = object.points[s.body_point];

@@ -22,49 +22,47 @@ class ObjectMotionEstimator {
     double evidence_margin_m = 0.8;  // by which visible evidence may lie beyond the points that are known
     PoseFitParams fit;
   };
-  /// Visible evidence is worth looking for while the standard deviation of the predicted position is below this: an
-  /// outline that is off by half a vehicle holds other points.
+  /// Standard deviation of the predicted position above which visible evidence is not worth looking for: an outline
+  /// that is off by half a vehicle holds other points.
   static constexpr double kMaxEvidenceSigma_m = 1.5;
 
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
-  /// Pose from the body points seen in `scene`, with the predicted kinematics as prior; where too few of them are, also
-  /// from those that are found by their patches. Updates kinematics, points and misfits. Empty (and the object
-  /// unchanged but for misfits) when too few points agree. The result's frame, track and state are filled by the
-  /// caller.
+  /// Measures the pose from the body points seen in `scene`, with the predicted kinematics as prior. Where too few are
+  /// seen, points found by their patches are used, too. Updates kinematics, points and misfits. Empty (and the object
+  /// unchanged but for misfits) when too few points agree. The caller fills the result's frame, track and state.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
                                           const SE3& T_world_cam) const;
 
-  /// What was found of an object in another frame, with its pose there and the points that agree on it.
+  /// Findings on an object in another frame: its pose there and the points that agree on it.
   struct Found {
     ObjectObservation observation;
     PoseFit fit;
     MeasuredPoints points;
   };
-  /// Pose in an earlier frame, when the object was not yet known: from the observations of its points that were already
-  /// followed then, and of those that are found by their patches in `later`, a frame in which they were measured; with
-  /// a prior on the pose. Empty when too few of them agree. Leaves the object as it is.
+  /// Measures the pose in an earlier frame, when the object was not yet known, with a prior. It uses points that were
+  /// already followed then, and those found by their patches in `later`, a frame in which they were measured. Empty
+  /// when too few of them agree. Leaves the object as it is.
   std::optional<Found> lookBack(const TrackedObject& object, const SceneMotion& earlier, const MeasuredPoints& later,
                                 const PosePrior& prior) const;
 
-  /// For an object none of whose own points were followed: the predicted pose, when there is visible evidence of it,
-  /// enough points of unknown motion within its outline. Its covariance is wide, as the prediction is made of
-  /// measurements that count already.
+  /// Returns the predicted pose of an object without followed points, when enough points of unknown motion lie within
+  /// its outline. Its covariance is wide, as the prediction is made of measurements that count already.
   std::optional<ObjectObservation> visibleEvidence(const TrackedObject& object, const SceneMotion& scene,
                                                    const PosePrior& predicted) const;
 
   /// The object's points that are observed in a scene.
   MeasuredPoints measuredPoints(const TrackedObject& object, const SceneMotion& scene) const;
 
-  /// Points of a scene that may lie on an object, though nothing is known of their motion yet: they are added to it and
-  /// to its `measured` points.
+  /// Adds points of a scene that may lie on an object, though nothing is known of their motion yet, to it and to its
+  /// `measured` points.
   void addNearby(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                  MeasuredPoints& measured) const;
-  /// The same of patches between its points, and on the trunk of who may be walking, in place of those it has.
+  /// Adds patches between its points, and on the trunk of who may be walking, in place of those it has.
   void addPatches(const SceneMotion& scene, const SE3& T_cam_body, TrackedObject& object,
                   MeasuredPoints& measured) const;
 
-  /// Encounter of an object that is spawned in this frame: its body frame is where its points say, up to their noise.
+  /// Encounter of an object that is spawned in this frame: its points define its body frame, up to their noise.
   ObjectObservation firstObservation(const TrackedObject& object, const SceneMotion& scene) const;
 
  private:
@@ -77,7 +75,7 @@ class ObjectMotionEstimator {
                                               const SE3& T_cam_body) const;
   PoseObservation observe(const BodyPoint& point, const ScenePoint& now) const;
   PosePrior weakPrior(const SE3& T_cam_body) const;
-  /// The pose that the observations and the prior agree on, and the observations that fit it.
+  /// Pose on which the observations and the prior agree, and the observations that fit it.
   struct Agreement {
     PoseFit fit;
     std::vector<Observation> seen;

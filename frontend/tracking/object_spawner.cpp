@@ -17,7 +17,7 @@ constexpr double kTurnRate_radps = 0.05;  // standard deviation of an object's t
 constexpr double kSure = 3;               // standard deviations of a walk, which is confirmed by as many
 constexpr double kSpeedModel_mps = 0.5;   // that of its velocity beyond the component's own: not all points are its own
 
-/// The component's velocity, without turning, about the pose that the first observation measured.
+/// Kinematics with the component's velocity, without turning, about the pose that the first observation measured.
 ObjectKinematics firstKinematics(const SE3& T_world_body, const MotionComponent& vehicle, const SE3& T_world_cam,
                                  const Matrix6d& pose_covariance) {
   const Eigen::Matrix3d R_body_cam = T_world_body.rotation().transpose() * T_world_cam.rotation();
@@ -68,7 +68,7 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
   return object;
 }
 
-/// What it was seen to do before counts for its confirmation.
+/// Spawns an object; what it was seen to do before counts for its confirmation.
 TrackedObject ObjectSpawner::labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover,
                                       const SE3& T_world_cam) {
   TrackedObject object = objectOf(scene, mover.component, T_world_cam);
@@ -79,8 +79,8 @@ TrackedObject ObjectSpawner::labelled(const SceneMotion& scene, const LabelledWa
   return object;
 }
 
-/// Finds the patches in the frame before where the velocity takes them from. One pose of the body must agree with most
-/// of them; how far it lies from that of now is measured, not assumed.
+/// True when the patches have moved. They are looked for in the frame before where the velocity takes them from, and
+/// one pose of the body must agree with most of them. How far it lies from the present pose is measured, not assumed.
 bool ObjectSpawner::haveMoved(const TrackedObject& object, const SceneMotion& scene, const SceneMotion& before) const {
   constexpr double kMostAgree = 0.5;
   constexpr std::size_t kLeast = 8;  // patches, each of which shares half of its pixels with its neighbors

@@ -18,16 +18,17 @@ class ObjectSpawner {
   ObjectSpawner(const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
       : min_points_(params.min_points), camera_(camera), motion_(params, camera) {}
 
-  /// Objects from those points of the component that are not `taken`, one for each vehicle abreast; marks their points.
+  /// Spawns objects from those points of the component that are not `taken`, one for each vehicle abreast; marks their
+  /// points.
   std::vector<TrackedObject> operator()(const SceneMotion& scene, const MotionComponent& component,
                                         const SE3& T_world_cam, std::vector<bool>& taken);
 
-  /// May a component be a person on foot? Corners are few on clothes, so that a point or two may be all there is.
+  /// True when a component may be a person on foot. Corners are few on clothes, so a point or two may be all there is.
   bool mayBeWalker(const MotionComponent& component, const GroundPlane& ground) const;
-  /// The person. Empty unless the patches around the points moved together since the frame before, and surely.
+  /// Spawns the person. Empty unless the patches around the points surely moved together since the frame before.
   std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before,
                                       const MotionComponent& component, const SE3& T_world_cam);
-  /// Somebody whom an instance label shows.
+  /// Spawns somebody whom an instance label shows.
   TrackedObject labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover, const SE3& T_world_cam);
 
  private:

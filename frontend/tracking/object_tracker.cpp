@@ -22,7 +22,7 @@ constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the midd
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
 
-/// Does a point lie on what is known of an object, or hardly beside it?
+/// True when a point lies on what is known of an object, or hardly beside it.
 bool isAt(const TrackedObject& object, const Eigen::Vector3d& p_cam) {
   constexpr double kBeside_m = 0.4;
   return object.extent(kBeside_m).contains(object.T_cam_body.inverse() * p_cam);
@@ -70,7 +70,7 @@ void ObjectTracker::advance(const SceneMotion& scene) {
   }
 }
 
-/// Nobody knows where the objects are now, seen from the camera: what is met may be another vehicle.
+/// Ends all objects. Nobody knows where they are now, seen from the camera: what is met may be another vehicle.
 void ObjectTracker::endAll(FrameMeasurements& measurements) {
   look_back_.forget();
   for (TrackedObject& object : objects_) object.life.end();
@@ -90,7 +90,7 @@ void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, Fram
   record(object, std::move(*observation), measurements);
 }
 
-/// A frame without a measurement of the object.
+/// Passes a frame without a measurement of the object.
 void ObjectTracker::coast(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
   object.life.miss();
   if (isOutOfReach(object)) return object.life.end();
@@ -104,7 +104,7 @@ bool ObjectTracker::isOutOfReach(const TrackedObject& object) const {
   return !mayBeInImage(object);
 }
 
-/// Is the body's origin in the image or just outside, or the middle of its points well inside?
+/// True when the body's origin is in the image or just outside, or the middle of its points well inside.
 bool ObjectTracker::mayBeInImage(const TrackedObject& object) const {
   const auto isInside = [&](const Eigen::Vector3d& p_body, double margin_px) {
     const auto uvd = camera_.project(object.T_cam_body * p_body);
@@ -113,8 +113,8 @@ bool ObjectTracker::mayBeInImage(const TrackedObject& object) const {
   return isInside(Eigen::Vector3d::Zero(), -kOutsideImage_px) || isInside(object.middle(), kInsideImage_px);
 }
 
-/// What is reported of a lost object: its predicted pose, as an observation where there is visible evidence of it, and
-/// for some frames as a prediction where there is none.
+/// Report of a lost object: its predicted pose, as an observation where there is visible evidence of it. Without
+/// evidence it is a prediction, for some frames.
 std::optional<ObjectObservation> ObjectTracker::withoutMeasurement(const TrackedObject& object,
                                                                    const SceneMotion& scene) const {
   std::optional<ObjectObservation> observation;
@@ -155,7 +155,7 @@ void ObjectTracker::record(TrackedObject& object, ObjectObservation observation,
   }
 }
 
-/// Tentative objects that were observed in this frame and are no part of others.
+/// Confirms tentative objects that were observed in this frame and are no part of others.
 void ObjectTracker::confirmSure(const SceneMotion& scene, FrameMeasurements& measurements) {
   for (TrackedObject& object : objects_) {
     const bool observed = object.life.phase() == Phase::kTentative && object.life.missed() == 0;
@@ -163,8 +163,8 @@ void ObjectTracker::confirmSure(const SceneMotion& scene, FrameMeasurements& mea
   }
 }
 
-/// The direction of travel is known better now than when the object was spawned, and points that were not the body's
-/// are gone: the body's x axis is laid along the travel and its origin amid the points, once and for all.
+/// Confirms an object and sets its body axes once and for all: x along the travel, the origin amid the points. By now
+/// the direction of travel is better known, and points that were not the body's are gone.
 void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measurements) {
   const Eigen::Matrix3d& R = object.kinematics.pose().rotation();
   const Eigen::Matrix3d R_travel = travelAxes(object.kinematics.velocityWorld_mps(), R.col(2));
@@ -180,7 +180,7 @@ void ObjectTracker::confirm(TrackedObject& object, FrameMeasurements& measuremen
   object.backlog.clear();
 }
 
-/// Segments give their points to the objects that they are matched with, and spawn new ones where they are left over.
+/// Gives the components' points to the objects that they are matched with, and spawns objects from the others.
 void ObjectTracker::matchComponents(const SceneMotion& scene) {
   const std::vector<int> object_of = associateObjects(objects_, scene, T_world_cam_, camera_);
   std::vector<bool> taken(scene.points.size(), false);
@@ -207,7 +207,7 @@ void ObjectTracker::matchComponents(const SceneMotion& scene) {
   dropFarthest();
 }
 
-/// People of whom too few points are followed for a moving component.
+/// Spawns people of whom too few points are followed for a moving component.
 void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of,
                                  const std::vector<bool>& taken) {
   if (!previous_scene_ || !previous_scene_->features) return;
@@ -224,7 +224,7 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
   }
 }
 
-/// People whom instance labels show.
+/// Spawns people whom instance labels show.
 void ObjectTracker::spawnLabelled(const SceneMotion& scene, const std::vector<bool>& taken) {
   if (!scene.features || !scene.features->frame->inputs.instances) return;
   const LabelledWalkers mover_of(look_back_, camera_);
@@ -237,7 +237,7 @@ void ObjectTracker::spawnLabelled(const SceneMotion& scene, const std::vector<bo
   }
 }
 
-/// Of the objects that are not confirmed yet, where more are followed than may be.
+/// Drops the farthest objects that are not confirmed yet, where more are followed than may be.
 void ObjectTracker::dropFarthest() {
   const auto most = static_cast<std::size_t>(params_.max_objects);
   while (objects_.size() > most) {
@@ -249,13 +249,13 @@ void ObjectTracker::dropFarthest() {
   }
 }
 
-/// The position of an object that was not seen has drifted: what is seen again is taken for what was seen last.
+/// Moves an object to where it is seen again, as its position has drifted while it was not seen.
 void ObjectTracker::reappear(TrackedObject& object, const MotionComponent& component) const {
   object.kinematics.fusePosition(object.last_middle_body, T_world_cam_ * component.centroid_cam, kReappearanceSpread_m);
   object.T_cam_body = T_world_cam_.inverse() * object.kinematics.pose();
 }
 
-/// Points that agree with a static world and belong to no object, and those of which more views must tell.
+/// Adds points that agree with a static world and belong to no object, and those of which more views must tell.
 void ObjectTracker::addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const {
   std::vector<PointId> of_objects;
   for (const ObjectObservation& seen : measurements.objects)

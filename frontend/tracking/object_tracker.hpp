@@ -17,8 +17,8 @@
 namespace motorcade {
 
 /// The stage `tracking`: follows the moving objects from frame to frame, in the world frame of the front-end's own
-/// odometry, and measures each (encounter, motion). An object's life cycle runs here: it is spawned from a moving
-/// component, confirmed, lost and found again, and ends. Call in frame order: the stage remembers the objects.
+/// odometry, and measures each (encounter, motion). It runs an object's life cycle: spawned from a moving component,
+/// confirmed, lost and found again, and ended. Call in frame order: the stage remembers the objects.
 class ObjectTracker {
  public:
   struct Params {

@@ -18,11 +18,11 @@ constexpr double kDepthNoiseSigmas = 2.0;  // by which the margin grows
 constexpr double kFitsChi2 = 9.0;          // of a velocity to the body's; 3 degrees of freedom: 97 %
 constexpr double kNotStaticChi2 = 16.0;  // by which a moving point explains the track better than one at rest: 4 sigma
 constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from the background by motion
-/// A point whose place is known less well may be on anything, and would stretch the object's extent without end.
+/// Largest depth noise of a point that may join: others may be on anything, and would stretch the object without end.
 constexpr double kMostSlack_m = kLongestVehicle.length_m;
 
-/// Close to the points known so far: a long vehicle is found step by step. Points of a component that was matched to
-/// the object need no neighbors within the size of an ordinary vehicle.
+/// True when a candidate is close to the points known so far: a long vehicle is found step by step. Points of a
+/// component that was matched to the object need no neighbors within the size of an ordinary vehicle.
 bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate, bool matched) {
   const double slack_m = kDepthNoiseSigmas * std::sqrt(candidate.covariance.trace());
   if (slack_m > kMostSlack_m) return false;
@@ -34,7 +34,8 @@ bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate,
   return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
 }
 
-/// Is a candidate close to the points of what may be a person or a two-wheeler? Others walk and ride beside it.
+/// True when a candidate is close to the points of what may be a person or a two-wheeler; others walk and ride beside
+/// it.
 bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& candidate, bool walks) {
   constexpr double kReach_m = 0.4, kReachUp_m = 0.6, kMostNoise_m = 0.5, kLongestTwoWheeler_m = 2;
   const double longest_m = walks ? kPerson.length_m : kLongestTwoWheeler_m;
@@ -46,7 +47,7 @@ bool isWithinReachOfSmall(const Eigen::AlignedBox3d& core, const BodyPoint& cand
          hypotenuse(grown_m.x(), grown_m.y()) < longest_m + slack_m;
 }
 
-/// A region as high as another one: of a body beside it only a point is known.
+/// A region made as high as another one: of a body beside it only a point is known.
 PointRegion asHigh(PointRegion beside, const PointRegion& other) {
   beside.box.top_px = std::min(beside.box.top_px, other.box.top_px);
   beside.box.bottom_px = std::max(beside.box.bottom_px, other.box.bottom_px);
@@ -59,7 +60,7 @@ bool mayMove(const ScenePoint& point) {
 
 }  // namespace
 
-/// A point that moves, and with the body's velocity there. What is told by a glance is asked first.
+/// Adopts points that move with the body's velocity there. Quick checks come first.
 void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, const MotionComponent* component,
                                const SE3& T_world_cam, std::vector<bool>& taken) const {
   if (object.kinematics.speed_mps() < kMinSpeed_mps) return;

@@ -11,8 +11,8 @@ class PointAdoption {
  public:
   explicit PointAdoption(const StereoCamera& camera) : camera_(camera) {}
 
-  /// Adds the points of `component`, which was matched to the object, or without one those of the whole scene, that
-  /// fit. `taken[i]` marks points of some object, and is kept up to date.
+  /// Adds points that fit: those of `component`, which was matched to the object, or without one those of the whole
+  /// scene. `taken[i]` marks points of some object, and is kept up to date.
   void operator()(TrackedObject& object, const SceneMotion& scene, const MotionComponent* component,
                   const SE3& T_world_cam, std::vector<bool>& taken) const;
 

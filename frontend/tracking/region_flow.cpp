@@ -54,7 +54,7 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
   return flow ? std::optional<Seen>({*flow, -last_s}) : std::nullopt;
 }
 
-/// With a margin: clothes may be smooth, and what tells most is where they end.
+/// Pixels of a region with a margin: clothes may be smooth, and what tells most is where they end.
 RegionFlow::Pixels RegionFlow::pixelsOf(const InstanceRegion& region, const InstanceLabels& labels) {
   constexpr int kMargin_px = 2;
   constexpr int kMost = 200;  // pixels, evenly spread
@@ -74,7 +74,7 @@ RegionFlow::Pixels RegionFlow::pixelsOf(const InstanceRegion& region, const Inst
   return pixels;
 }
 
-/// In the left image, unless it is known there, and from there in the right one.
+/// Looks for the region in the left image, unless it is known there, and from there in the right one.
 std::optional<PointObservation> RegionFlow::observe(const RegionTemplate& now, const Pixels& pixels,
                                                     const Features& there, const Guess& guess) const {
   const Image &left = there.left.levels.front(), &right = there.right.levels.front();

@@ -15,8 +15,8 @@
 
 namespace motorcade {
 
-/// Scene flow of what an instance label shows as a whole: it is looked for in the frames before, by its brightness in
-/// both images, and a point at rest and one that moves are fitted to where it was, as to any scene point.
+/// Scene flow of what an instance label shows as a whole. It is looked for in the frames before by its brightness in
+/// both images. A point at rest and one that moves are then fitted to where it was, as to any scene point.
 class RegionFlow {
  public:
   /// `past` outlives it.
@@ -27,7 +27,7 @@ class RegionFlow {
     SceneFlow flow;
     double duration_s = 0;
   };
-  /// Of the region's upper part. The disparity is that of its points. Empty where it is found in too few frames.
+  /// Flow of the region's upper part; `disparity_px` is that of its points. Empty where it is found in too few frames.
   std::optional<Seen> operator()(const InstanceRegion& region, double disparity_px, const SceneMotion& scene,
                                  const SE3& T_world_cam) const;
 
@@ -38,7 +38,7 @@ class RegionFlow {
     std::vector<Eigen::Vector2f> offsets_px;
   };
   static Pixels pixelsOf(const InstanceRegion& region, const InstanceLabels& labels);
-  /// Where the region is looked for, and how much larger it is seen there than now.
+  /// Place where the region is looked for, and how much larger it is seen there than now.
   struct Guess {
     Eigen::Vector3d uvd_px;
     double scale = 1;

@@ -11,7 +11,7 @@
 namespace motorcade {
 namespace {
 
-/// Farther from the prediction than a followed point from its guess, hence surer.
+/// Alignment farther from the prediction than that of a followed point from its guess, hence surer.
 constexpr PatchParams kAlignment{.max_shift_px = 6, .min_ncc = 0.75};
 constexpr double kDisparitySearch_px = 2;  // around the prediction
 constexpr int kStep_px = 6;                // between patches, which then share half of their pixels
@@ -19,7 +19,7 @@ constexpr int kMostPatches = 64;           // about; of a large object they are 
 constexpr double kSameDepth_px = 0.7;      // of disparity, from that of the points
 constexpr double kPatchSigma_px = 0.25, kPatchDisparitySigma_px = 0.35;  // no corners: somewhat worse than those
 
-/// The point in the other pair, where it projects to `predicted_uvd_px`.
+/// Finds the point in the other pair, where it projects to `predicted_uvd_px`.
 std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& from, const Features& other,
                                     const Eigen::Vector3d& predicted_uvd_px, double disparity_offset_px) {
   const auto scale = static_cast<float>(predicted_uvd_px.z() / measured.uvd_px.z());
@@ -42,7 +42,7 @@ std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& 
   return found;
 }
 
-/// Between patches that cover a box.
+/// Step between patches that cover a box.
 int stepOf(const Box& box) {
   const double area_px2 = (box.right_px - box.left_px) * (box.bottom_px - box.top_px);
   return std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / kMostPatches)));

@@ -25,7 +25,7 @@ std::optional<PointRegion> regionOf(std::span<const ScenePoint* const> points) {
   return region;
 }
 
-/// The road at the depth of the two tells nothing: it is seen between the wheels of a car as well.
+/// The road at the depth of the two does not count: it is seen between the wheels of a car as well.
 bool isSeenThrough(const SceneMotion& scene, const PointRegion& a, const PointRegion& b, const StereoCamera& camera) {
   constexpr double kLeastGap_px = 6;  // half a patch: points that are nearer share pixels
   constexpr double kBehind_m = 1;     // the line between the two: more than a person is deep

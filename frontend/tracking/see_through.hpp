@@ -9,7 +9,7 @@
 
 namespace motorcade {
 
-/// Where some points lie in the image, and how near they are.
+/// Place of some points in the image, and how near they are.
 struct PointRegion {
   Box box;
   double disparity_px;  // the median
@@ -18,8 +18,8 @@ struct PointRegion {
 /// The region around points; empty without points.
 std::optional<PointRegion> regionOf(std::span<const ScenePoint* const> points);
 
-/// Is the background seen between two groups of points, so that they lie on two bodies? On one body, which is convex
-/// but for details, nothing between two of its places is farther than the line between these.
+/// True when the background is seen between two groups of points, so that they lie on two bodies. A body is convex but
+/// for details: nothing between two of its places is farther than the line between these.
 bool isSeenThrough(const SceneMotion& scene, const PointRegion& a, const PointRegion& b, const StereoCamera& camera);
 
 /// Tells whether the background parts something from an object that moves alike: people walk in groups, and the street
@@ -33,7 +33,7 @@ class SeeThrough {
   std::optional<PointRegion> regionOf(const TrackedObject& object) const;
   bool areApart(const TrackedObject& a, const TrackedObject& b) const;
   bool isApart(const TrackedObject& object, const MotionComponent& component) const;
-  /// Is the background seen between two objects of any size?
+  /// True when the background is seen between two objects of any size.
   bool isGapBetween(const TrackedObject& a, const TrackedObject& b) const;
 
  private:

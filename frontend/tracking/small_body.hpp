@@ -12,20 +12,20 @@ inline constexpr double kFastestWalk_mps = 3;    // who runs for a bus
 inline constexpr double kFastestRide_mps = 8;    // on a bicycle
 inline constexpr double kSlowestWalk_mps = 0.5;  // what is slower cannot be told from what it stands before
 
-/// May an object be a person or a two-wheeler, as far as is seen of it? It is no faster than these, and its points lie
-/// within what one takes up of the road. A vehicle of which little was seen yet may pass as well.
+/// True when an object may be a person or a two-wheeler, as far as is seen of it. It is no faster than these, and its
+/// points lie within what one takes up of the road. A vehicle of which little was seen yet may pass as well.
 bool mayBeSmall(const TrackedObject& object);
 
-/// Is a speed that of a walk, at a depth at which patches are followed?
+/// True when a speed is that of a walk, at a depth at which patches are followed.
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera);
 
-/// May an object be a person on foot, who is followed by patches on the trunk, as corners are few on clothes and most
-/// of them on limbs? It is so near that the disparity tells a patch on the body from what lies half a meter behind, and
-/// it moves: what stands cannot be told from what it stands before.
+/// True when an object may be a person on foot, who is followed by patches on the trunk: corners are few on clothes,
+/// and most of them are on limbs. It must be so near that the disparity tells a patch on the body from what lies half a
+/// meter behind. It must move: what stands cannot be told from what it stands before.
 bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera);
 
-/// The kinematics of a walk for what may be a person on foot, else those of a vehicle. People walk steadily. They may
-/// go to a side of the body's axes, as few points laid these out.
+/// Kinematics of a walk for what may be a person on foot, else those of a vehicle. People walk steadily. They may go to
+/// a side of the body's axes, as few points laid these out.
 ObjectKinematics::Params kinematicsOf(const TrackedObject& object, const ObjectKinematics::Params& vehicle);
 
 /// Trunk and head of a person in the image. Arms and legs are left out: they swing, and a foot on the ground rests.

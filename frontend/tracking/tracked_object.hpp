@@ -32,8 +32,8 @@ struct MeasuredPoints {
   std::vector<ScenePoint> points;
 };
 
-/// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, fixed
-/// to the vehicle from then on.
+/// A vehicle that the tracker follows. The body frame's origin is the middle of the points when it is confirmed, and
+/// fixed to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
   bool born_slow = false;      // it was as slow and small as a person when it was spawned
@@ -49,7 +49,7 @@ struct TrackedObject {
   Eigen::Vector3d spawned_at_world = Eigen::Vector3d::Zero();
   std::vector<ObjectObservation> backlog;  // observations until it is confirmed, oldest first
 
-  /// Nothing but an instance label led to it yet: it gives way to what is found without one.
+  /// True when only an instance label led to it yet: it gives way to what is found without one.
   bool isGuess() const { return born_labelled && !life.reported(); }
   const BodyPoint* find(PointId point) const;
   /// Index of a point that is there.
@@ -67,7 +67,7 @@ struct TrackedObject {
   Eigen::Vector3d velocityAt_mps(const Eigen::Vector3d& p_body) const;
   /// Misfit of a point's velocity to the body's there; chi-square with 3 degrees of freedom.
   double velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const;
-  /// Another choice of body axes, for all that is kept in them.
+  /// Changes the body axes, and all that is kept in them.
   void changeBodyFrame(const SE3& T_body_new);
 };
 

@@ -11,10 +11,10 @@
 /// right, T exp(rho, phi). Units are in the names.
 ///
 /// A struct begins with its size, which the caller sets: motorcade_frame frame = {.struct_size = sizeof frame};
-/// Later versions append members. What an older program's struct lacks is not written, and where it is read has its
-/// default; what an older library does not know must be zero. Zero is a member's default where there is no `_init`.
-/// One thread pushes, one takes results; every other call is for any thread. What the caller hands in is read during
-/// the call alone. A call that gives an error leaves structs as they were, and NULL where a handle was asked for.
+/// Later versions append members. Those that an older program's struct lacks are not written, and have their default
+/// when read; those that an older library does not know must be zero, the default where there is no `_init`. One thread
+/// pushes, one takes results; any thread may make every other call. Arguments are read during the call alone. A call
+/// that gives an error leaves structs as they were, and NULL where a handle was asked for.
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -37,7 +37,7 @@ typedef enum {
   MOTORCADE_ERROR_MEMORY = -4,       // there is no more
   MOTORCADE_ERROR_INTERNAL = -5      // a fault of the library
 } motorcade_code;
-/// Of this thread's last call that gave an error: what is wrong and how to mend it, and what it is about, as
+/// The error of this thread's last call that failed: what is wrong and how to mend it, and the field, as
 /// "camera.baseline_m". Never NULL; the text lives until the next such call.
 const char* motorcade_last_error(void);
 const char* motorcade_last_error_field(void);
@@ -59,10 +59,10 @@ typedef struct {
   int width_px, height_px;                        // of the images that are pushed
   double fx_px, fy_px, cx_px, cy_px, baseline_m;  // rectified; not read where there is a rig
   const motorcade_rig* rig;                       // of a pair that is still to be rectified, which is done inside
-  /// Pixels of the left image, rectified, that are of no use: at its sides, and those of a mask that are not 0.
+  /// Useless pixels of the rectified left image: at its sides, and those of a mask that are not 0.
   int ignored_left_px, ignored_top_px, ignored_right_px, ignored_bottom_px;
   const uint8_t* ignored_mask;  // width_px x height_px, row by row; or NULL
-  /// How exact the calibration is, see motorcade.hpp; typical values where `has_sigmas` is false.
+  /// Standard deviations of the calibration, see motorcade.hpp; typical values where `has_sigmas` is false.
   bool has_sigmas;
   double sigma_focal, sigma_middle_px, sigma_distortion, sigma_baseline, sigma_disparity_px;
 } motorcade_camera;
@@ -138,8 +138,8 @@ motorcade_code motorcade_tracker_reset(motorcade_tracker* tracker);
 motorcade_code motorcade_tracker_poll(motorcade_tracker* tracker, motorcade_result** result);
 motorcade_code motorcade_tracker_wait(motorcade_tracker* tracker, int64_t timeout_ms, motorcade_result** result);
 motorcade_code motorcade_tracker_done(const motorcade_tracker* tracker, bool* done);
-/// From now on results, those that wait first, go to `take`, on a thread of the tracker. It releases them and may call
-/// all but destroy. NULL: they are for poll and wait again.
+/// Sends results, first those that wait, to `take`, on a thread of the tracker. It releases them and may call all but
+/// destroy. NULL: to poll and wait again.
 typedef void (*motorcade_take)(motorcade_result* result, void* user);
 motorcade_code motorcade_tracker_on_result(motorcade_tracker* tracker, motorcade_take take, void* user);
 /// The same for frames that have left the smoothing window; see motorcade.hpp. NULL: nobody wants them.
@@ -147,7 +147,7 @@ motorcade_code motorcade_tracker_on_final(motorcade_tracker* tracker, motorcade_
 motorcade_code motorcade_tracker_counts(const motorcade_tracker* tracker, motorcade_counts* counts);
 /// Lost and rejected: the pose is predicted, with a wide covariance.
 typedef enum { MOTORCADE_STATUS_GOOD, MOTORCADE_STATUS_LOST, MOTORCADE_STATUS_REJECTED } motorcade_status;
-/// Why a frame is not simply good; good with a cause: measured, but less surely.
+/// Cause of a status other than simply good. Good with a cause: measured, but less surely.
 // clang-format off
 typedef enum { MOTORCADE_CAUSE_NONE, MOTORCADE_CAUSE_AFTER_GAP, MOTORCADE_CAUSE_FEW_POINTS, MOTORCADE_CAUSE_NO_POINTS,
   MOTORCADE_CAUSE_UNLINKED, MOTORCADE_CAUSE_FAILED, MOTORCADE_CAUSE_UNUSABLE, MOTORCADE_CAUSE_OUT_OF_ORDER,
@@ -186,7 +186,7 @@ typedef struct {
   motorcade_kind kind;
   bool has_covariance;
   double kind_probability, existence_probability;  // the latter that it is there and moves, or moved before
-  /// Of its speed and of its yaw rate; NaN in its first frame, and where the back-end cannot tell.
+  /// Changes of its speed and of its yaw rate; NaN in its first frame, and where the back-end cannot tell.
   double acceleration_mps2, acceleration_sigma_mps2, yaw_acceleration_radps2, yaw_acceleration_sigma_radps2;
   double box_center_sigma_m[3];  // along the body's axes
 } motorcade_object;
@@ -200,7 +200,7 @@ motorcade_code motorcade_result_frame(const motorcade_result* result, motorcade_
 motorcade_code motorcade_result_object(const motorcade_result* result, size_t index, motorcade_object* object);
 motorcade_code motorcade_result_mask(const motorcade_result* result, size_t index, motorcade_mask* mask);
 void motorcade_result_release(motorcade_result* result);
-/// For one thread at a time. What was read lives until its next call; an image that cannot be read has no pixels.
+/// Reads a recorded drive, one thread at a time. Its pixels live until the next call; an unreadable image has none.
 motorcade_code motorcade_recording_open(const char* folder, motorcade_recording** recording);
 motorcade_code motorcade_recording_camera(const motorcade_recording* recording, motorcade_camera* camera);
 motorcade_code motorcade_recording_size(const motorcade_recording* recording, int64_t* size);

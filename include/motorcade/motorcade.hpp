@@ -28,7 +28,7 @@
 
 namespace motorcade {
 
-/// What was asked for cannot be done. `field` names what is to be mended, as `camera.baseline_m`, and the message how.
+/// A request that cannot be met. `field` names the input to mend, as `camera.baseline_m`; the message says how.
 class MOTORCADE_API Error : public std::runtime_error {
  public:
   Error(std::string field, const std::string& message)
@@ -40,7 +40,7 @@ class MOTORCADE_API Error : public std::runtime_error {
   std::string field_;
 };
 
-/// The stereo camera: of a rectified pair, or with `rig` of one that is still to be rectified, which is done inside.
+/// The stereo camera of rectified pairs. With `rig`, the pairs are not rectified yet, and the tracker rectifies them.
 struct Camera {
   int width_px = 0, height_px = 0;                                    // of the images that are pushed
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0, baseline_m = 0;  // rectified; not read where there is a rig
@@ -55,15 +55,15 @@ struct Camera {
     std::array<double, 12> T_right_left{};
   };
   std::optional<Rig> rig{};
-  /// Pixels of the left image, rectified, that are of no use: dead ones, borders, logos. So many columns and rows at
-  /// the sides, and those of the mask, row by row, that are not 0. A bonnet is found without it.
+  /// Useless pixels of the rectified left image: dead ones, borders, logos. They are so many columns and rows at the
+  /// sides, and the pixels of the mask, row by row, that are not 0. A bonnet is found without it.
   struct Ignored {
     int left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
     std::vector<std::uint8_t> mask{};  // of width_px x height_px, or empty
   };
   Ignored ignored{};
-  /// How exact the calibration is: standard deviations of errors that stay the same, of which all covariances hold what
-  /// they do. Zeros: it is exact. Empty: the values below, or those that `Options::settings` tell.
+  /// Standard deviations of the calibration's errors, which stay constant; all covariances contain their effect. Zeros:
+  /// the calibration is exact. Empty: the values below, or those in `Options::settings`.
   struct Sigmas {
     double focal = 0.002;        // of the focal length of both cameras, as a share
     double middle_px = 0.7;      // of the principal point of both, each way
@@ -76,8 +76,8 @@ struct Camera {
 
 /// One moment's two images. The pixels are copied by `Tracker::push`.
 struct Pair {
-  /// Gray is BT.601. Of kGray16 the upper eight bits are used of the 8, 10, 12, 14 or 16 that hold the brightest sample
-  /// of the first pair with one above 255; for all pairs, as the log tells.
+  /// Color becomes gray by BT.601. Of kGray16 the upper eight of 8, 10, 12, 14 or 16 bits are used: as many bits as
+  /// hold the brightest sample of the first pair with one above 255. That holds for all pairs, and the log tells it.
   enum class Format { kGray8, kGray16, kRgb8, kBgr8 };
   struct Image {
     const void* pixels = nullptr;
@@ -88,9 +88,9 @@ struct Pair {
   Image left{}, right{};
   std::int64_t stamp_ns = 0;  // capture time, after that of the pair before
   std::int64_t frame = -1;    // number, from 0, after that of the pair before; -1: the next one
-  /// Which body the left image's pixels show, rectified and of the camera's size, where a network tells it: one number
-  /// for the pixels of one, 0 for none; kGray8 or kGray16, or without pixels. Evidence, and no more: they may be late,
-  /// change from pair to pair, and lie. With the first ones `push` asks the heap for their room.
+  /// Instance labels of the left image, as a network tells them: one number for the pixels of one body, 0 for none.
+  /// They are rectified, of the camera's size, kGray8 or kGray16, or without pixels. They are evidence and no more:
+  /// labels may be late, change from pair to pair, and lie. With the first ones `push` allocates their room.
   Image instances{};
 };
 
@@ -101,12 +101,12 @@ struct VehicleMotion {
   double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;  // standard deviations; 0: found out
 };
 
-/// What is known in one frame, as soon as it is.
+/// Estimates of one frame, given as soon as they are known.
 struct Result {
   enum class Status { kGood, kLost, kRejected };  // lost and rejected: the pose is predicted, with a wide covariance
-  /// Good, but less sure: measured across missing frames (kAfterGap), by hardly points enough (kFewPoints). Lost:
-  /// nothing is found again, as in the dark (kNoPoints), points are seen, but not how the camera moved (kUnlinked), a
-  /// fault inside (kFailed). Rejected: the images are of no use (kUnusable). No result has the last two.
+  /// Good, but less sure: measured across missing frames (kAfterGap), or by barely enough points (kFewPoints). Lost: no
+  /// point is found again, as in the dark (kNoPoints); points do not tell the camera's motion (kUnlinked); an internal
+  /// fault (kFailed). Rejected: the images are unusable (kUnusable). No result has the last two.
   enum class Cause { kNone, kAfterGap, kFewPoints, kNoPoints, kUnlinked, kFailed, kUnusable, kOutOfOrder, kTooLate };
   enum class State { kMoving, kStopped, kPredicted };  // stopped: moved before; predicted: not seen in this frame
   enum class Kind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
@@ -143,11 +143,11 @@ struct Result {
   Cause cause = Cause::kNone;
   int segment = 0;  // counts up where nothing measured links the poses before and after
   std::array<double, 12> T_world_cam{};
-  /// Of T_world_cam, relative to the frame that defines the world: grows with the way. Empty behind a gap.
+  /// Covariance of T_world_cam relative to the frame that defines the world; grows with the way. Empty behind a gap.
   std::optional<std::array<double, 36>> pose_covariance{};
-  /// Of T_cam(before)_cam(now), `Options::covariance_frames` apart, or since the last frame before that with a result.
+  /// Covariance of T_cam(before)_cam(now). Before is `Options::covariance_frames` ago, or the last result before that.
   std::optional<std::array<double, 36>> motion_covariance{};
-  /// The camera's own, along its axes [m/s] and about them [rad/s]: since the frame before that was seen.
+  /// The camera's velocity along its axes [m/s] and about them [rad/s], since the last frame that was seen.
   std::array<double, 6> velocity{};
   std::array<double, 36> velocity_covariance{};
   std::vector<Object> objects{};  // by id
@@ -191,30 +191,30 @@ class MOTORCADE_API Tracker {
   /// Throws Error, or std::bad_alloc. `options` keep their defaults where they are not given.
   Tracker(const Camera& camera, const Options& options);
   explicit Tracker(const Camera& camera);
-  /// Abandons what is in flight, ends calls that wait in other threads, and joins its own. A child of `fork` has none
-  /// of them, and can but drop what it inherited.
+  /// Abandons what is in flight, ends calls that wait in other threads, and joins its own threads. A child of `fork`
+  /// has none of these threads, and only drops what it inherited.
   ~Tracker();
-  /// A pair or labels of another size than the camera's, a pair without pixels, not after the one before (a clock that
-  /// was set back is followed after four pairs) or less than half a millisecond after it, as stamps in another unit
-  /// are, after `close`, or beside another thread's push is rejected.
+  /// Rejects a pair without pixels, a pair or labels of another size than the camera's, a pair after `close`, and one
+  /// beside another thread's push. Rejects a stamp less than half a millisecond after the last one, as stamps in
+  /// another unit are. A clock that was set back is followed after four pairs.
   Push push(const Pair& pair) noexcept;
-  /// Predicts the camera where images fail. For any thread, at a rate of its own, also late and out of order; a pair
-  /// knows what came before it. What contradicts the images is left out, as the log tells. Rejected: what is no number.
+  /// Predicts the camera where images fail. Any thread may call it, at its own rate, late and out of order; a pair
+  /// knows the samples before it. Samples that contradict images are left out and logged. Rejects values out of range.
   Push push_motion(const VehicleMotion& motion) noexcept;
   void close() noexcept;  // no further pair comes: the results of those that were accepted still do
-  /// Forgets the drive, and whatever is in flight or was not taken: the next pair begins a new world, with stamps and
-  /// numbers of its own, also after `close`. Ids and counts go on, and callbacks stay. Not by `log` or that of finals.
+  /// Forgets the drive, what is in flight, and results that nobody took. The next pair, also after `close`, begins a
+  /// new world with its own stamps and numbers. Ids and counts go on, callbacks stay. Not by `log` or that of finals.
   void reset();
   std::optional<Result> poll();  // the next result if there is one already
-  /// Waits for the next result; empty when there is none in time, and at once when there will be none (`done`).
+  /// Waits for the next result; empty when time is up, and at once when no further result will come (`done`).
   std::optional<Result> wait(std::chrono::milliseconds timeout);
   bool done() const noexcept;
-  /// From now on results, those that wait first, go to this callback, one by one on a thread of the tracker; empty: to
-  /// `poll` and `wait` again. The one before has returned then. It may throw, and call all but ~Tracker.
+  /// Sends results, first those that wait, to this callback, one by one on a thread of the tracker; empty: to `poll`
+  /// and `wait` again. The previous callback has returned by then. It may throw, and call all but ~Tracker.
   void on_result(std::function<void(Result)> take);
-  /// From now on every frame, dropped ones too, goes to this callback once, in order, when it has left the smoothing
-  /// window, the last ones after `close`: as the program's final files have it, without velocity, masks and latency.
-  /// Results that follow wait for it, and `done`. Empty: to nobody. It may call all but `push`, `wait`, ~Tracker.
+  /// Sends each frame once and in order, dropped ones too, to this callback when it leaves the smoothing window, the
+  /// last ones after `close`. They are as in the final files, without velocity, masks and latency. Later results and
+  /// `done` wait for it. Empty: to nobody. It may call all but `push`, `wait`, ~Tracker.
   void on_final(std::function<void(Result)> take);
   Counts counts() const noexcept;
 
@@ -230,7 +230,7 @@ class MOTORCADE_API Recording {
   ~Recording();
   Camera camera() const;  // rectified, as the pairs are
   std::int64_t size() const;
-  /// Its pixels live until the next call. An image that cannot be read has none, and the tracker will reject the pair.
+  /// The pixels live until the next call. An image that cannot be read has none, and the tracker rejects the pair.
   Pair read(std::int64_t index);
 
  private:

@@ -13,7 +13,7 @@
 namespace motorcade::perf {
 namespace {
 
-/// Which of `count` frames is shown as the drive's frame `index`.
+/// Index of the frame, of `count`, that is shown as the drive's frame `index`.
 std::size_t shownFrame(std::size_t index, std::size_t count, Looping looping) {
   if (count == 1) return 0;
   if (looping == Looping::kRound) return index % count;

@@ -11,7 +11,7 @@
 
 namespace motorcade::perf {
 
-/// How a sequence goes on after its last frame, so that the images stay continuous.
+/// Continuation of a sequence after its last frame, so that the images stay continuous.
 enum class Looping {
   kForthAndBack,  // 0 1 2 3 2 1 0 1 ...: for any drive
   kRound,         // 0 1 2 3 0 1 2 3 ...: for a drive that ends where it begins
@@ -50,8 +50,8 @@ std::unique_ptr<FrameSource> playFromDisk(const Sequence& drive, std::size_t ahe
 /// process.
 double decodingCpu_ms(const Sequence& drive);
 
-/// A unit: CPU time per pair in which libpng alone decodes the drive's images [ms]. Machines differ by two, costs in
-/// units hardly. Empty for images that are no PNGs.
+/// Unit of costs: CPU time per pair in which libpng alone decodes the drive's images [ms]. Machines differ by a factor
+/// of two, costs in units hardly. Empty for images that are no PNGs.
 std::optional<double> unit_ms(const Sequence& drive);
 
 }  // namespace motorcade::perf

@@ -16,7 +16,7 @@ class App;
 
 namespace motorcade::perf {
 
-/// What all measurements of the pipeline take from the command line.
+/// Options of all measurements of the pipeline.
 struct BenchOptions {
   std::filesystem::path sequence, config;
   std::string range;       // A:B

@@ -10,7 +10,7 @@
 namespace motorcade::perf {
 namespace {
 
-/// The size in the last line that begins with `tag`: those of the whole process come after those of the arenas.
+/// Size in the last line that begins with `tag`: those of the whole process come after those of the arenas.
 std::size_t lastSize(std::string_view report, std::string_view tag) {
   const auto line = report.rfind(tag);
   if (line == std::string_view::npos) return 0;

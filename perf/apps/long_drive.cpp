@@ -21,7 +21,7 @@ struct LongDriveOptions {
   int every = 1000;
 };
 
-/// Prints a row for each so many frames.
+/// Prints a row after every so many frames.
 class DriveTable {
  public:
   explicit DriveTable(int every) : every_(every), start_(processUsage()) {

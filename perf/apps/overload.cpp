@@ -24,7 +24,7 @@ struct OverloadOptions {
   double seconds = 20, stall_s = 2;
 };
 
-/// What the pipeline can do without overload.
+/// Capacity of the pipeline without overload.
 struct Capacity {
   double rate_hz = 0;        // of pairs that enter as soon as there is room
   double processing_ms = 0;  // p99 of the latency at a quarter of that rate: what a frame takes that meets no other
@@ -55,7 +55,7 @@ HeldDrive seenFaster(const OverloadOptions& options, std::size_t frames, std::si
   return HeldDrive(faster);
 }
 
-/// The stages, of which scene flow segmentation takes `pause` longer in one frame.
+/// Stages of which scene flow segmentation takes `pause` longer in one frame.
 Stages withStall(Stages stages, FrameId frame, std::chrono::duration<double> pause) {
   stages.scene_flow_segmentation = [segment = std::move(stages.scene_flow_segmentation), frame, pause, done = false](
                                        const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) mutable {
@@ -75,7 +75,7 @@ class OverloadBench {
     live_.pipeline.policy = InputPolicy::kLive;
   }
 
-  /// False when frames are unaccounted for.
+  /// Runs all measurements; false when frames are unaccounted for.
   bool run() {
     measureCapacity();
     bool accounted = true;
@@ -102,7 +102,7 @@ class OverloadBench {
                 capacity_.processing_ms);
   }
 
-  /// Two periods of the camera and the time that a frame takes alone.
+  /// Bound of the latency: two periods of the camera and the time that a frame takes alone.
   double bound_ms(double camera_hz) const { return 2e3 / camera_hz + capacity_.processing_ms; }
 
   bool overload(int factor) const {
@@ -113,7 +113,7 @@ class OverloadBench {
     return report(std::to_string(factor) + " x", camera_hz, run);
   }
 
-  /// At half the rate, with a pause in the middle.
+  /// Plays at half the rate, with a pause in the middle.
   bool stall(Stalling stalling) const {
     constexpr double kSecondsAround = 2;
     const double camera_hz = capacity_.rate_hz / 2;

@@ -14,7 +14,7 @@
 
 namespace motorcade::perf {
 
-/// What one playback of a drive through the pipeline cost and gave.
+/// Costs and results of one playback of a drive through the pipeline.
 struct Playback {
   PipelineSummary summary;
   ResultDigests digests;
@@ -30,7 +30,7 @@ struct Playback {
 };
 
 struct PlaybackOptions {
-  /// Pairs per second of a camera that does not wait for the pipeline; empty: each pair enters as soon as there is
+  /// Pairs per second of a camera that does not wait for the pipeline. Empty: each pair enters as soon as there is
   /// room, and is due then.
   std::optional<double> rate_hz;
   /// Called with each result, on the thread that takes them.

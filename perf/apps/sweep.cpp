@@ -32,7 +32,7 @@ struct Cell {
   Playback best;  // the fastest of the repetitions
 };
 
-/// Everything of a sweep that its cells share.
+/// Everything that the cells of a sweep share.
 struct Material {
   Sequence drive;
   PipelineConfig config;
@@ -47,7 +47,7 @@ struct Material {
         decoding_cpu_ms(decodingCpu_ms(drive)),
         unit_ms(perf::unit_ms(drive)) {}
 
-  /// CPU time as units, a column wide; empty where there is no unit.
+  /// Formats CPU time as units, a column wide; empty where there is no unit.
   std::string units(double cpu_ms) const {
     char text[16] = "-";
     if (unit_ms) std::snprintf(text, sizeof text, "%.2f", cpu_ms / *unit_ms);
@@ -93,7 +93,8 @@ void print(const Cell& cell, const Material& material) {
   std::fflush(stdout);
 }
 
-/// With one thread a stage's CPU time is all its work; with more, other workers help in its parallel loops.
+/// Prints the costs of the stages. With one thread a stage's CPU time is all its work; with more, other workers help in
+/// its parallel loops.
 void printStages(const std::vector<Cell>& cells) {
   std::printf("\nper stage, CPU ms of the thread that ran it / wall ms\n%-7s %7s %9s", "images", "threads",
               "in flight");

@@ -7,17 +7,17 @@
 
 namespace motorcade::perf {
 
-/// The camera of the benchmarks for images of this width, in KITTI's proportions: 1242 px wide it is KITTI's own.
+/// Camera of the benchmarks for images of this width, in KITTI's proportions: 1242 px wide it is KITTI's own.
 StereoCamera benchCamera(int width_px);
 
-/// Stereo pairs of a textured plane that comes nearer: two successive ones. Disparities grow from 8 px at the horizon
-/// to 68 px (at 1242 px width).
+/// Two successive stereo pairs of a textured plane that comes nearer. Disparities grow from 8 px at the horizon to 68
+/// px (at 1242 px width).
 struct BenchStreet {
   StereoCamera camera;
   FeaturesPtr before, now;
 };
 
-/// Rendered once per size. A width of 1242 px takes seconds.
+/// Returns the street of this size, which is rendered once. A width of 1242 px takes seconds.
 const BenchStreet& benchStreet(int width_px);
 
 /// Calls `work` where its parallel loops find no second thread, so that wall time is CPU time.

@@ -13,14 +13,13 @@
 #include "io/sequence/sequence.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// What it costs to rectify a pair on the way, beside what it takes to decode it and what libpng would take. Items are
-/// pairs, of euroc_v101.
+/// Cost of rectifying a pair on the way, beside that of decoding it and that of libpng. Items are pairs of euroc_v101.
 namespace motorcade::perf {
 namespace {
 
 constexpr std::size_t kPairs = 16;
 
-/// Empty where the recording is not there.
+/// Opens the recording; empty where it is not there.
 std::optional<Sequence> recording() {
   const auto folder = test::dataFolder() / "euroc_v101";
   if (!std::filesystem::exists(folder)) return std::nullopt;
@@ -35,7 +34,7 @@ Remap remapOf(const Sequence& sequence, StereoSide side) {
   return {left ? rig.left : rig.right, left ? rig.R_left : rig.R_right, rig.camera, sizeOf(sequence)};
 }
 
-/// Runs what `make_work(sequence)` gives once per iteration, or says that there is no data.
+/// Runs the work that `make_work(sequence)` returns once per iteration, or says that there is no data.
 template <class Work>
 void overRecording(benchmark::State& state, const Work& make_work) {
   const auto sequence = recording();

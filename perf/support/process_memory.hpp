@@ -4,9 +4,9 @@
 
 namespace motorcade::perf {
 
-/// Of this process, as the system sees it: freed memory that the allocator keeps counts too.
+/// Resident memory of this process, as the system sees it: freed memory that the allocator keeps counts too.
 std::size_t residentBytes();
-/// Handed out by the allocator and not given back.
+/// Memory that the allocator handed out and did not get back.
 std::size_t heapBytes();
 
 }  // namespace motorcade::perf

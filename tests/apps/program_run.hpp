@@ -29,7 +29,7 @@ inline std::string contentOf(const fs::path& file) {
   return content.str();
 }
 
-/// A shell's wait of at most a minute until a file has more than `lines` lines.
+/// Shell command that waits at most a minute until a file has more than `lines` lines.
 inline std::string waitForLines(const fs::path& file, std::size_t lines) {
   std::ostringstream wait;
   wait << "for i in $(seq 600); do [ $(cat " << file.string() << " 2>/dev/null | wc -l) -gt " << lines
@@ -40,7 +40,7 @@ inline std::string waitForLines(const fs::path& file, std::size_t lines) {
 /// Runs the program, each test in a folder of its own.
 class Run : public testing::Test {
  protected:
-  /// Runs the program and gives its exit code.
+  /// Runs the program and returns its exit code.
   int motorcade(const std::string& arguments, const std::string& prefix = "") {
     const std::string command =
         prefix + MOTORCADE_PROGRAM " " + arguments + " >" + (folder_ / "stdout").string() + " 2>" + errors().string();
@@ -55,7 +55,7 @@ class Run : public testing::Test {
     return nlohmann::json::parse(contentOf(out(name) / "summary.json"));
   }
 
-  /// The measures of a run against the truth of its sequence.
+  /// Measures of a run against the truth of its sequence.
   nlohmann::json evaluate(const std::string& name, const fs::path& sequence = kSequence) {
     const fs::path file = folder_ / (name + ".json");
     EXPECT_EQ(

@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Holds the arrows between the folders, apps -> {frontend, backend, io} -> core, and between the rooms of a folder.
+/// Tests the arrows between the folders, apps -> {frontend, backend, io} -> core, and between the rooms of a folder.
 namespace motorcade {
 namespace {
 
@@ -27,9 +27,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"apps", {"core", "frontend", "backend", "io", "apps"}},
 };
 
-/// The rooms of a folder in the order of the flow: a room may include those before it, and itself. The empty name is
-/// what lies in the folder itself. In apps, what runs in a vehicle comes first, so that nothing that measures or
-/// renders can enter it.
+/// Rooms of a folder in the order of the flow: a room may include those before it, and itself. The empty name stands
+/// for files in the folder itself. In apps the library comes first, so that evaluation and rendering never ship in a
+/// vehicle.
 const std::map<std::string, std::vector<std::string>> kRooms{
     {"frontend", {"", "image", "geometry", "features", "matching", "motion", "segmentation", "tracking", "shape"}},
     {"backend", {"", "graph", "elimination", "solver", "motion", "factors", "window", "pose_graph", "joint"}},
@@ -172,7 +172,7 @@ TEST(Architecture, StagesKnowNeitherFlowGraphNorLog) {
   }
 }
 
-/// The shared library is linked to neither: the first and the third file are of programs, the others of modules.
+/// The shared library is linked to neither. The first and the third file are of programs, the others of modules.
 TEST(Architecture, OpenCvAndYamlCppStayInModulesAndPrograms) {
   std::set<std::string> files;
   for (const auto& [folder, allowed] : kMayInclude)

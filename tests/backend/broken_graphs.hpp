@@ -11,8 +11,8 @@
 #include "tests/backend/space_fixtures.hpp"
 #include "tests/support/matchers.hpp"
 
-/// Broken graphs over each kind of variable: what the solver says of them, and that their good rest is solved as if the
-/// broken part were not there.
+/// Broken graphs over each kind of variable: the solver's reports on them, and its solution of their good rest, which
+/// must be as if the broken part were not there.
 namespace motorcade::test {
 
 inline constexpr double kSame = 1e-8;  // of two solvers that both have converged
@@ -64,7 +64,7 @@ template <class Space>
 class BrokenGraph : public testing::Test {
  protected:
   static constexpr int kSize = Space::kSize;
-  /// Solves, and gives what was found.
+  /// Solves, and returns the problems found.
   std::vector<SolverProblem> problemsFound() {
     auto problems = solver().update().problems;
     for (int i = 0; i < 10; ++i) {
@@ -74,7 +74,7 @@ class BrokenGraph : public testing::Test {
     }
     return problems;
   }
-  /// Of the good graph alone.
+  /// Solution of the good graph alone.
   std::vector<Value> goodSolution(int count, std::uint64_t seed) {
     IncrementalSolver solver(kExact);
     Chain<Space> chain(solver, seed);

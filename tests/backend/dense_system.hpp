@@ -52,9 +52,9 @@ class DenseSystem {
 /// Updates until nothing moves any more.
 void updateUntilStill(IncrementalSolver& solver);
 
-/// Largest difference of a variable between the solver and a converged dense solution of its own graph, which begins
-/// `nudge` (standard deviation of each component) beside the solver's: a point that is stationary but no minimum would
-/// be left.
+/// Largest difference of a variable between the solver and a converged dense solution of its own graph. The latter
+/// begins `nudge` (standard deviation of each component) beside the solver's, and so leaves a stationary point that is
+/// no minimum.
 double differenceFromBatch(const IncrementalSolver& solver, double nudge = 0.01);
 
 }  // namespace motorcade::test

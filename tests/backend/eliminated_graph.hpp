@@ -53,7 +53,7 @@ struct EliminatedGraph {
     return path;
   }
 
-  /// The tree's square is what the factors state.
+  /// Expects the tree's square to equal what the factors state.
   void expectEqual() const {
     const DenseSystem dense(graph);
     const Eigen::MatrixXd expected = informationOfFactors(graph, dense);
@@ -69,8 +69,8 @@ struct EliminatedGraph {
   std::vector<VariableId> variables;
 };
 
-/// Each variable is frontal once, each factor belongs to the clique that owns it, each separator lies in the parent,
-/// where the rows say.
+/// Expects each variable to be frontal once, each factor to belong to the clique that owns it, and each separator to
+/// lie in the parent, where the rows say.
 inline void EliminatedGraph::expectSound() const {
   std::vector<VariableId> frontals;
   std::vector<FactorId> factors;

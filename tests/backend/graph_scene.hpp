@@ -36,7 +36,7 @@ struct GraphScene {
       x.insert(x.end(), states[v].x.begin(), states[v].x.begin() + graph.sizeOf(v));
     return Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   }
-  /// What the linear model says at the present coordinates.
+  /// Residual of the linear model at the present coordinates.
   Eigen::VectorXd modeled(FactorId f) const {
     const auto term = models.term(f);
     return term.leftCols(term.cols() - 1) * coordinatesOf(models.factor(f)) + term.col(term.cols() - 1);

@@ -32,7 +32,7 @@ class VectorPrior final : public JacobianFactor {
   double sigma_;
 };
 
-/// Where a variable is: the origin of a pose, or a vector, bent so that its factors are not linear.
+/// Position of a variable: the origin of a pose, or a vector, bent so that its factors are not linear.
 inline SmallVector positionOf(const Value& value) {
   if (const auto* pose = std::get_if<SE3>(&value)) return pose->translation();
   if (const auto* pose = std::get_if<SE2>(&value)) return pose->translation();
@@ -120,7 +120,7 @@ class RandomWorld {
   RandomWorld(std::uint64_t seed, Kind kind, RobustLoss loss = RobustLoss::kNone)
       : noise_(seed), kind_(kind), loss_(loss) {}
 
-  /// To a FactorGraph or an IncrementalSolver.
+  /// Adds a variable to a FactorGraph or an IncrementalSolver.
   template <class Graph>
   VariableId addVariable(Graph& graph) {
     const Value truth = draw();
@@ -168,7 +168,7 @@ class RandomWorld {
     return std::make_unique<PositionDifference>(a, b, std::get<SmallVector>(disturbed(difference, 1)), kSigma_m);
   }
 
-  /// Over three poses in space.
+  /// An encounter over three poses in space.
   std::unique_ptr<const JacobianFactor> encounter(VariableId x, VariableId a, VariableId z) {
     const SE3 seen = space(x).inverse() * space(a) * space(z);
     return std::make_unique<CameraEncounterFactor>(std::array{x, a, z}, CameraEncounterModel{measured(seen, loss_)},
@@ -177,7 +177,7 @@ class RandomWorld {
   bool isSpace(VariableId v) const { return std::holds_alternative<SE3>(truth(v)); }
 
   Noise& noise() { return noise_; }
-  /// Uniform in [0, n).
+  /// A number uniform in [0, n).
   std::size_t below(std::size_t n) {
     return std::min(static_cast<std::size_t>(noise_.uniform(0, static_cast<double>(n))), n - 1);
   }
@@ -207,7 +207,7 @@ class RandomWorld {
     return std::get<SE3>(disturbed(T, outlier ? 20 : 1));
   }
 
-  /// Far from singular, so that systems made of it are well conditioned.
+  /// Covariance far from singular, so that systems made of it are well conditioned.
   template <int N>
   Eigen::Matrix<double, N, N> correlatedNoise(const Eigen::Matrix<double, N, 1>& sigma) {
     Eigen::Matrix<double, N, N> covariance = randomCovariance<N>(noise_, sigma);

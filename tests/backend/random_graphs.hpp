@@ -18,7 +18,7 @@ class RandomPoses {
     return xi;
   }
   SE3 pose(double sigma_m, double sigma_rad) { return SE3::exp(noise(sigma_m, sigma_rad)); }
-  /// Uniform in [0, n).
+  /// A number uniform in [0, n).
   std::size_t below(std::size_t n) { return random_() % n; }
 
  private:
@@ -42,7 +42,7 @@ class MultibodyGraph {
     SE3 anchor_truth;
   };
 
-  /// With a loss, one camera encounter in eight is an outlier, and all of them have it.
+  /// All camera encounters have the loss, if there is one, and one in eight of them is an outlier.
   MultibodyGraph(IncrementalSolver& solver, std::uint64_t seed, int objects, RobustLoss loss = RobustLoss::kNone)
       : solver_(solver), random_(seed), loss_(loss), objects_(static_cast<std::size_t>(objects)) {}
 
@@ -62,7 +62,7 @@ class MultibodyGraph {
   const std::vector<VariableId>& camera() const { return camera_; }
   const std::vector<Object>& objects() const { return objects_; }
   RandomPoses& random() { return random_; }
-  /// Comes into view with the next frame.
+  /// Starts an object, which comes into view with the next frame.
   void startObject() { objects_.emplace_back(); }
   /// Forgets an object, and returns its variables.
   std::vector<VariableId> takeObject(std::size_t m) {

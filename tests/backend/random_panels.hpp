@@ -19,13 +19,13 @@ inline Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index cols, std::m
   return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return normal(random); });
 }
 
-/// Positive definite, with eigenvalues from 1 to about 5.
+/// A positive definite matrix, with eigenvalues from 1 to about 5.
 inline Eigen::MatrixXd randomInformation(Eigen::Index size, std::mt19937& random) {
   const Eigen::MatrixXd J = randomMatrix(size, size, random);
   return Eigen::MatrixXd::Identity(size, size) + J.transpose() * J / static_cast<double>(size);
 }
 
-/// A matrix as the kernels take it: padded with junk, not aligned, and with guard values all around it.
+/// A matrix in the kernels' form: padded with junk, not aligned, and with guard values all around it.
 class PaddedMatrix {
  public:
   explicit PaddedMatrix(const Eigen::MatrixXd& matrix, double padding = 1e3)

@@ -47,7 +47,7 @@ class PriorVectorFactor final : public JacobianFactor {
   Eigen::Matrix3d root_;
 };
 
-/// What is left of a factor when its residual is multiplied by A.
+/// Rest of a factor when its residual is multiplied by A.
 class ProjectedFactor final : public JacobianFactor {
  public:
   ProjectedFactor(std::unique_ptr<const JacobianFactor> whole, Eigen::MatrixXd A)

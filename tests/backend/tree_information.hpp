@@ -12,7 +12,7 @@ namespace motorcade::test {
 /// Summed up from the linear models of the factors.
 Eigen::MatrixXd informationOfFactors(const FactorGraph& graph, const DenseSystem& dense);
 
-/// What the matrices of its cliques take.
+/// Memory of the matrices of its cliques.
 std::size_t matrixBytes(const EliminationTree& tree);
 
 /// [R d]^T [R d] of the cliques.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A batch of twelve drives on a Slurm cluster of this one machine: while it runs a worker is killed, slurmd restarted and the node lost; what
+# Tests a batch of twelve drives on a Slurm cluster of this one machine: while it runs a worker is killed, slurmd restarted and the node lost; what
 # comes out is, byte for byte, what two tasks at a time give without Slurm. Exits with 77 where Slurm cannot be installed.
 #   tests/cluster/batch_on_slurm.sh MOTORCADE
 set -euo pipefail

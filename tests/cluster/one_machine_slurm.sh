@@ -82,7 +82,7 @@ slurm_start_requeued() {
   done
 }
 
-# slurm_wait FOLDER WHAT COMMAND...: until the command succeeds, at most SLURM_WAIT_S (30) seconds; then shows the ends of the logs.
+# slurm_wait FOLDER WHAT COMMAND...: waits until the command succeeds, at most SLURM_WAIT_S (30) seconds; then shows the ends of the logs.
 slurm_wait() {
   local folder=$1 what=$2 end=$((SECONDS + ${SLURM_WAIT_S:-30}))
   shift 2

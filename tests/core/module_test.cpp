@@ -22,7 +22,7 @@ using testing::HasSubstr;
 constexpr char kFunction[] = "motorcade_for_test";
 using Function = int(int);
 
-/// Of this program's modules.
+/// Folder of this program's modules.
 fs::path modulesFolder() { return fs::read_symlink("/proc/self/exe").parent_path() / "motorcade"; }
 
 int three() { return 3; }

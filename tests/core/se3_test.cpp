@@ -35,7 +35,7 @@ TEST(SE3, LogarithmInvertsExponential) {
   for (const auto& xi : twists()) EXPECT_THAT(SE3::exp(xi).log(), IsNear(xi, 1e-9));
 }
 
-/// Choices hang on last bits, so both ways to write the product must give the same.
+/// Choices depend on last bits, so both ways to write the product must give the same.
 TEST(SE3, MovesPointsAsItsRotationAndTranslationDoToTheBit) {
   for (const auto& xi : twists()) {
     const SE3 T = SE3::exp(xi);

@@ -20,7 +20,7 @@ std::vector<int> cpusOfThisThread() {
   return cpus;
 }
 
-/// What `threads` threads that began on the same processor may run on after all have settled.
+/// Processors that `threads` threads that began on the same one may run on after all have settled.
 std::vector<std::vector<int>> cpusAfterSettling(std::size_t threads) {
   const std::vector<int> all = cpusOfThisThread();
   ThreadSpread spread(threads);

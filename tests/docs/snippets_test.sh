@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Holds that the documents' code is that of the examples, which are compiled and run: snippets_test.sh DOCUMENT...
+# Tests that the documents' code is that of the examples, which are compiled and run: snippets_test.sh DOCUMENT...
 # Each fenced block in C, C++ or Python follows a comment with its file, <!-- examples/embed/main.cpp -->, and occurs in it literally.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

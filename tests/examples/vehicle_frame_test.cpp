@@ -42,7 +42,7 @@ Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T, const Vector6& xi) {
   return T * poseOf(xi.head<3>(), xi.tail<3>());
 }
 
-/// Of full rank, with all its parts related.
+/// A covariance of full rank, with all its parts related.
 template <int kSize>
 Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor> someCovariance(double sigma) {
   std::mt19937 random(3);
@@ -114,7 +114,7 @@ TEST(VehicleFrame, APoseIsThatOfTheMountingTimesThatInTheCamera) {
   EXPECT_TRUE(eigen(object.box->center_m).isApprox(R * (seen.T_cam_body * center_body_m) + mounted_m));
 }
 
-/// Perturbs the pose in the camera as its covariance says, and gathers what becomes of it in the vehicle.
+/// Perturbs the pose in the camera as its covariance says, and gathers the poses in the vehicle.
 TEST(VehicleFrame, CovariancesOfPoseAndBoxAreThoseOfManyPerturbedPoses) {
   constexpr int kSamples = 40'000;
   constexpr double kTolerance = 0.04;  // eight standard errors of a sample variance, relative

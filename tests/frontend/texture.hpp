@@ -29,7 +29,7 @@ class Texture {
               2 * std::numbers::pi * unit(random)};
     }
   }
-  /// Around 128, with a standard deviation of 24 gray levels.
+  /// Gray level, around 128 with a standard deviation of 24.
   double operator()(double x, double y) const {
     double sum = 0;
     for (const Wave& wave : waves_) sum += std::sin(wave.fx * x + wave.fy * y + wave.phase);

@@ -9,12 +9,12 @@
 
 namespace motorcade::test {
 
-/// Few pixels, so that its images are quickly rendered.
+/// A rig of few pixels, so that its images are quickly rendered.
 inline constexpr StereoCamera kSmallRig{
     .fx_px = 300, .fy_px = 300, .cx_px = 200, .cy_px = 100, .baseline_m = 0.54, .width_px = 400, .height_px = 200};
 
-/// Two surfaces that face the camera, one at rest and one of a vehicle at the left, as a camera sees them that drives
-/// ahead at 10 m/s: what stereo matching and optical flow find there, without error.
+/// Two surfaces that face a camera which drives ahead at 10 m/s: one at rest and, at the left, one of a vehicle. Stereo
+/// matching and optical flow find them without error.
 class TwoSurfaces {
  public:
   static constexpr double kCameraStep_m = 1, kWall_m = 30, kCar_m = 4;

@@ -4,8 +4,8 @@
 
 using namespace motorcade;
 
-/// In place of the real one: numbers, switches and choices of the parts that need no stage. All that differs is the
-/// number of keys.
+/// Table of parameters in place of the real one: numbers, switches and choices of the parts that need no stage. Only
+/// the number of keys differs.
 std::vector<ConfigurationKey> motorcade::parameterTable(PipelineConfig& config) {
   std::vector<ConfigurationKey> table;
   const auto add = [&](const std::string& section, const std::vector<Parameter>& parameters) {

@@ -15,7 +15,7 @@
 
 #include "io/files/errors.hpp"
 
-/// What the fuzz targets share: an input as a file in memory, and what every refusal of one must say.
+/// Parts that the fuzz targets share: an input as a file in memory, and the check of what every refusal of one says.
 namespace motorcade::fuzz {
 
 /// A regular file that no folder holds; it has a path all the same.
@@ -49,8 +49,9 @@ inline void require(bool holds, std::string_view what) {
   std::abort();
 }
 
-/// The message names the file first, then the line, unless the fault is that something is not in the file at all; and
-/// it is text, whatever bytes the file has: one line, and the program's own commands, each on a line of its own.
+/// Requires that the message names the file first, then the line, unless the fault is that something is not in the file
+/// at all. It must be text, whatever bytes the file has: one line, and the program's own commands, each on a line of
+/// its own.
 inline void requireClear(std::string_view message, std::string_view file, std::span<const std::string_view> no_line) {
   constexpr std::size_t kLongest = 600;
   const std::string said(message);
@@ -66,7 +67,7 @@ inline void requireClear(std::string_view message, std::string_view file, std::s
   }
 }
 
-/// Reads; an error of the user is an answer, if it is clear. Anything else that is thrown ends the program.
+/// Reads; a clear error of the user is an answer. Anything else that is thrown ends the program.
 inline void readOrRefuse(std::string_view file, std::span<const std::string_view> no_line,
                          const std::function<void()>& read) {
   try {

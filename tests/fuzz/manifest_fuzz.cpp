@@ -7,7 +7,7 @@ using namespace motorcade;
 
 namespace {
 
-/// What was read can be planned: one of the two kinds of drives, and names that are names of folders.
+/// Requires that a manifest can be planned: one of the two kinds of drives, and names that are names of folders.
 void requirePlannable(const Manifest& manifest) {
   for (const ManifestEntry& entry : manifest.entries) {
     fuzz::require(entry.path.empty() != entry.scene.empty(), "an entry of both kinds, or of none");

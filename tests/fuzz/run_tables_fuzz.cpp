@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A run folder, empty but for one table, a link to the input; which one it is, the input's first bytes tell.
+/// A run folder, empty but for one table, which is a link to the input; the input's first bytes choose it.
 class LinkedRun {
  public:
   LinkedRun() {

@@ -132,7 +132,7 @@ void expectSame(const Result::Object& expected, const motorcade_object& object) 
   EXPECT_EQ(object.yaw_acceleration_sigma_radps2, expected.acceleration->yaw_sigma_radps2);
 }
 
-/// All but the latency, which is of the clock.
+/// Compares all but the latency, which is of the clock.
 void expectSame(const Result& expected, const motorcade_result* result) {
   auto frame = sized<motorcade_frame>();
   ASSERT_EQ(motorcade_result_frame(result, &frame), MOTORCADE_OK);

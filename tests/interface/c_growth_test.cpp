@@ -26,7 +26,7 @@ using testing::HasSubstr;
 
 constexpr std::byte kUntouched{0xAB};
 
-/// What a program gets whose struct ends after `bytes`, with what lies behind it.
+/// Bytes that a program gets whose struct ends after `bytes`, with those behind it.
 template <class Struct, class Call>
 std::vector<std::byte> filledUpTo(std::size_t bytes, const Call& call) {
   Struct filled;
@@ -38,7 +38,7 @@ std::vector<std::byte> filledUpTo(std::size_t bytes, const Call& call) {
   return {begin + sizeof(std::size_t), begin + sizeof filled};
 }
 
-/// The first half of a struct is the same when the rest is not there, and the rest is not written.
+/// Expects that the first half of a struct is the same when the rest is not there, and that the rest is not written.
 template <class Struct, class Call>
 void expectServedUpToItsSize(const Call& call) {
   constexpr std::size_t kHalf_bytes = sizeof(Struct) / 2 / sizeof(double) * sizeof(double);
@@ -134,7 +134,7 @@ TEST(CInterfaceGrowth, NewerProgramsAreServedWhileTheirNewMembersAreZero) {
   EXPECT_THAT(motorcade_last_error(), HasSubstr("newer"));
 }
 
-/// What is compiled into programs must not move: members are appended (docs: the header's rule). 64-bit Linux.
+/// Layouts compiled into programs must not move: members are appended (docs: the header's rule). 64-bit Linux.
 TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
   const std::array<std::size_t, 13> last{112, 120, 136, 40, 48, 88, 24, 48, 1088, 808, 40, 4, 1};
   constexpr std::size_t kCameraAtFirst = 88, kPairAtFirst = 40, kOptionsAtFirst = 80, kFrameAtFirst = 792,
@@ -161,7 +161,7 @@ TEST(CInterfaceGrowth, TheFirstVersionsLayoutStays) {
   EXPECT_THAT(sizes_in_c, testing::ElementsAreArray(now));
 }
 
-/// Without bytes at a struct's end that no member has, where a later member would not change the size.
+/// No struct ends with bytes that no member has, as a later member would then not change the size.
 TEST(CInterfaceGrowth, StructsEndWithTheirLastMember) {
   EXPECT_EQ(offsetof(motorcade_lens, coefficients) + sizeof(double[8]), sizeof(motorcade_lens));
   EXPECT_EQ(offsetof(motorcade_rig, T_right_left) + sizeof(double[12]), sizeof(motorcade_rig));

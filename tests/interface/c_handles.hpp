@@ -24,7 +24,7 @@ Struct sized() {
   return made;
 }
 
-/// As a program would use that plays a drive.
+/// Options of a program that plays a drive.
 inline motorcade_options replayOptions() {
   auto options = sized<motorcade_options>();
   motorcade_options_init(&options);

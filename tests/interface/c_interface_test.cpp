@@ -54,7 +54,7 @@ class CInterface : public testing::Test {
     pair_.stamp_ns = 1'000'000'000;
   }
 
-  /// Why the pair is rejected, or what the call complains of; empty when it is accepted.
+  /// Reason why the pair is rejected, or what the call complains of; empty when it is accepted.
   std::string pushed() {
     auto push = sized<motorcade_push>();
     const motorcade_code code = motorcade_tracker_push(tracker_.get(), &pair_, &push);

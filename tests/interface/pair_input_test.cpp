@@ -80,7 +80,7 @@ TEST_F(PairInputs, LabelsAreOfTheirPairAlone) {
   expectTaken(*first.inputs.instances, Pair::Format::kGray8);
 }
 
-/// They are of the rectified image, unlike the images beside them.
+/// Labels are of the rectified image, unlike the images beside them.
 TEST_F(PairInputs, LabelsOfARigStayWhereTheyAre) {
   Camera::Lens lens{.fx_px = 60,
                     .fy_px = 60,

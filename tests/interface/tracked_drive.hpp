@@ -10,7 +10,7 @@
 
 #include <motorcade/motorcade.hpp>
 
-/// Drives in memory, and what trackers make of them, by the public interface alone.
+/// Drives in memory, and trackers' results on them, by the public interface alone.
 namespace motorcade {
 
 /// A drive with its images in memory, without gaps between rows.
@@ -50,7 +50,7 @@ inline DriveInMemory readDrive(const std::string& folder, std::int64_t most_fram
   return drive;
 }
 
-/// Small and without anything to see, so that a tracker is quick with them.
+/// A drive that is small and without anything to see, so that a tracker is quick with it.
 inline DriveInMemory blankDrive(std::size_t frames) {
   constexpr int kSide_px = 64;
   constexpr std::int64_t kPeriod_ns = 100'000'000;
@@ -75,7 +75,7 @@ inline Tracker::Options replay(int threads = 2) {
   return options;
 }
 
-/// Of a tracker that was closed or is going to be, by `wait`.
+/// Results left, by `wait`, of a tracker that was closed or is going to be.
 inline std::vector<Result> rest(Tracker& tracker) {
   std::vector<Result> results;
   while (auto result = tracker.wait(std::chrono::hours(1))) results.push_back(std::move(*result));

@@ -163,8 +163,7 @@ TEST_F(Callback, MayThrowAnythingWhichIsLogged) {
   EXPECT_THAT(logged(), HasSubstr("no std::exception"));
 }
 
-/// In live results do not grow old while a callback takes its time: newer pairs replace those that wait at the
-/// entrance.
+/// Live results do not grow old while a callback takes its time: newer pairs replace those that wait at the entrance.
 TEST(LiveCallback, ThatIsSlowGetsFewResultsAndNewOnes) {
   const DriveInMemory drive = blankDrive(400);
   Tracker tracker(drive.camera, {});

@@ -19,7 +19,7 @@
 
 #include "tests/interface/tracked_drive.hpp"
 
-/// What leaves the smoothing window, by a callback of its own.
+/// Tests the frames that leave the smoothing window, which have a callback of their own.
 namespace motorcade {
 namespace {
 
@@ -63,7 +63,7 @@ std::vector<std::map<std::string, std::string>> tableOf(const std::filesystem::p
   return rows;
 }
 
-/// What `motorcade run` makes of the small drive, in a folder that goes with the test.
+/// Results of `motorcade run` on the small drive, in a folder that goes with the test.
 class Finals : public testing::Test {
  protected:
   void SetUp() override {
@@ -215,7 +215,7 @@ TEST_F(FinalTaking, IsOverWhenTheTrackerGoes) {
   }
 }
 
-/// Under the live policy pairs are dropped, here while a callback for results takes its time, but each has its final.
+/// Dropped pairs have their finals, too. The live policy drops pairs here while a callback for results takes its time.
 TEST_F(FinalTaking, GivesDroppedFramesTheirPredictedPoses) {
   std::vector<std::int64_t> frames, all;
   std::atomic<bool> pushed = false;

@@ -15,8 +15,8 @@ namespace {
 
 using PushStatus = Tracker::Push::Status;
 
-/// Runs in a child, which has a minute; the number of the first check that fails, 0 when all hold, or -1 when the
-/// child did not end by itself.
+/// Runs checks in a child, which has a minute. Returns the number of the first one that fails, 0 when all hold, or -1
+/// when the child did not end by itself.
 int failedInChild(const std::vector<std::function<bool()>>& checks) {
   constexpr unsigned kPatience_s = 60;
   const pid_t child = ::fork();

@@ -9,7 +9,7 @@
 #include "tests/interface/tracked_drive.hpp"
 #include "tests/support/replaced_heap.hpp"
 
-/// Counts what `push` asks of the heap and of mutexes, and refuses it memory. A program of its own, so that the
+/// Counts the calls of the heap and of mutexes by `push`, and refuses it memory. A program of its own, so that the
 /// replacements reach no other test.
 namespace {
 
@@ -66,7 +66,7 @@ class Camera30Hz {
   std::int64_t pairs_ = 0;
 };
 
-/// From the first pair on.
+/// Expects no call from the first pair on.
 void expectNothingAsked(Tracker& tracker, Camera30Hz& camera) {
   heap_calls = 0;
   locks = 0;

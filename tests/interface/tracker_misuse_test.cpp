@@ -10,7 +10,7 @@
 
 #include "tests/interface/tracked_drive.hpp"
 
-/// What cannot be made a tracker of: an Error names the field.
+/// Tests inputs of which no tracker can be made: an Error names the field.
 namespace motorcade {
 namespace {
 
@@ -114,7 +114,7 @@ TEST(TrackerMisuse, EachBadFieldOfARigIsNamed) {
   }
 }
 
-/// A lens that nothing can be made of is a fault, or gives some camera; it never hangs nor crashes.
+/// A lens of which nothing can be made is a fault, or gives some camera; it never hangs nor crashes.
 TEST(TrackerMisuse, AbsurdDistortionEndsInAnErrorOrACamera) {
   for (const auto distortion : {Camera::Distortion::kRadialTangential, Camera::Distortion::kEquidistant})
     for (const double size : {-9e5, -10.0, -1.0, 1.0, 10.0, 9e5}) {

@@ -10,7 +10,7 @@
 #include "tests/interface/result_truth.hpp"
 #include "tests/interface/tracked_drive.hpp"
 
-/// What results say of a car that drives ahead, of which the truth is known.
+/// Tests the results on a car that drives ahead, of which the truth is known.
 namespace motorcade {
 namespace {
 
@@ -25,7 +25,7 @@ class CarAhead : public testing::Test {
     Eigen::Vector3d velocity_mps;
   };
 
-  /// Calls `look` with each frame that tells of the car, which it does of nothing else.
+  /// Calls `look` with each frame that reports the car; no other object is reported.
   template <class Look>
   void forEachSight(const Look& look) {
     int seen = 0;

@@ -13,7 +13,7 @@
 
 #include "tests/interface/tracked_drive.hpp"
 
-/// Pairs that no tracker can do with, and producers in each other's way.
+/// Tests pairs that no tracker can use, and producers in each other's way.
 namespace motorcade {
 namespace {
 
@@ -24,7 +24,7 @@ using testing::HasSubstr;
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max(),
                        kLeast = std::numeric_limits<std::int64_t>::min();
 
-/// Good pairs with a bad one before each: what is rejected leaves no trace in the results of the others.
+/// Good pairs with a bad one before each: rejected pairs leave no trace in the results of the others.
 class BadPairs : public testing::Test {
  protected:
   void expectRejected(const std::string& why, const std::function<void(Pair&)>& spoil) {
@@ -40,7 +40,7 @@ class BadPairs : public testing::Test {
     pair.frame = 10 * static_cast<std::int64_t>(next_++);
     EXPECT_EQ(tracker_.push(pair).status, Tracker::Push::Status::kAccepted);
   }
-  /// Of the good pairs alone.
+  /// Expects the results of the good pairs alone.
   void expectResultsOfGoodPairs() {
     tracker_.close();
     const std::vector<Result> results = rest(tracker_);
@@ -181,7 +181,7 @@ TEST(PushMisuse, StampsFarApartAreNamed) {
   EXPECT_THAT(why, AllOf(HasSubstr("more than ten seconds"), HasSubstr("nanoseconds")));
 }
 
-/// While one thread waits in `push` for room, another one pushes.
+/// Another thread pushes while one waits in `push` for room.
 TEST(PushMisuse, ASecondProducerIsRejected) {
   const DriveInMemory drive = blankDrive(258);
   Tracker::Options options = replay();

@@ -18,7 +18,7 @@
 namespace motorcade {
 namespace {
 
-/// With ids counted from the least one, as those of a drive before are not used again.
+/// Bytes with ids counted from the least one, as those of a drive before are not used again.
 std::vector<std::string> bytesButForIds(std::vector<Result> results) {
   std::int64_t least = INT64_MAX;
   for (const Result& result : results)
@@ -125,7 +125,7 @@ TEST(ResetOfAny, EndsAPushThatWaitsForRoom) {
   producer.join();
 }
 
-/// Under the live policy a callback that is slow holds the results up.
+/// A slow callback holds the results up under the live policy.
 TEST(ResetOfAny, MayBeAskedForByTheCallbackForResultsButNotByThatForFinals) {
   const DriveInMemory drive = blankDrive(1);
   Tracker tracker(drive.camera, {});

@@ -11,8 +11,7 @@
 #include "tests/interface/result_truth.hpp"
 #include "tests/interface/tracked_drive.hpp"
 
-/// What results say of the camera, and that they say the same however they come, on a drive of which the truth is
-/// known.
+/// Tests the results on the camera, however they come, on a drive of which the truth is known.
 namespace motorcade {
 namespace {
 
@@ -100,7 +99,7 @@ TEST_F(Results, TellHowSureTheMotionIsOverAsManyFramesAsAskedFor) {
   }
 }
 
-/// Of the first frame nothing is known: not a velocity of zero, for sure.
+/// Nothing is known of the first frame's motion: it is not surely zero.
 TEST_F(Results, AreNotSureOfAMotionThatNothingTells) {
   EXPECT_GT(track(drive_).front().velocity_covariance[35], 0.1);
   EXPECT_GT(track(drive_).front().velocity_covariance[0], 100);

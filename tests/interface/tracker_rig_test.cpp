@@ -17,7 +17,7 @@
 #include "tests/interface/tracked_drive.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// A pair that is rectified inside gives what it gives when it was rectified before.
+/// Tests that a pair rectified inside gives the same as one that was rectified before.
 namespace motorcade {
 namespace {
 
@@ -72,7 +72,7 @@ DriveInMemory rectified(const DriveInMemory& raw) {
   return drive;
 }
 
-/// Frames that are good in the end, so that something was compared.
+/// Compares frames that are good in the end, so that something was compared.
 void expectTheSame(const DriveInMemory& raw) {
   const std::vector<Result> before = track(rectified(raw)), inside = track(raw);
   EXPECT_EQ(bytesOf(inside), bytesOf(before));
@@ -80,7 +80,7 @@ void expectTheSame(const DriveInMemory& raw) {
   EXPECT_EQ(inside.back().status, Result::Status::kGood);
 }
 
-/// The rendered pictures as if lenses had made them that distort: the world is bent then, and is so in both.
+/// The rendered pictures as if taken by distorting lenses: the world is bent then, and is so in both.
 DriveInMemory asIfDistorted(Camera::Distortion distortion) {
   DriveInMemory drive = readDrive(MOTORCADE_SMALL_SEQUENCE);
   const auto lens = [&](double scale) {

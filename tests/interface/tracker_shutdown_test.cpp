@@ -13,7 +13,7 @@
 #include "tests/interface/waiting_thread.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// How trackers end: what they lose, what they wait for, and how long.
+/// Tests the end of trackers: what they lose, what they wait for, and how long.
 namespace motorcade {
 namespace {
 
@@ -25,7 +25,7 @@ double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// How long a tracker takes to end after so many pairs, with as many in flight as there may be, in milliseconds.
+/// Time in milliseconds that a tracker takes to end after so many pairs, with as many in flight as there may be.
 double endingUnderLoad_ms(const DriveInMemory& drive, Tracker::Policy policy, std::size_t pairs) {
   Tracker::Options options = replay();
   options.policy = policy;

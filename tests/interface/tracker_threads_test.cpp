@@ -13,7 +13,7 @@
 
 #include "tests/interface/tracked_drive.hpp"
 
-/// Where the threads of trackers run, and that two trackers are as good as one.
+/// Tests the placement of trackers' threads, and that two trackers are as good as one.
 namespace motorcade {
 namespace {
 

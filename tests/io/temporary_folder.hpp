@@ -43,7 +43,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Runs `action`, which must throw an `Error`, and gives its message.
+/// Runs `action`, which must throw an `Error`, and returns its message.
 template <class Error, class Action>
 std::string messageOf(const Action& action) {
   try {

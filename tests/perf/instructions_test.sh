@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What perf/instructions.sh finds in a profile and says of a record, on small ones that are written here.
+# Tests perf/instructions.sh on small profiles and records that are written here.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)

@@ -5,8 +5,8 @@
 
 namespace motorcade::test {
 
-/// Where real drives lie: the folder that MOTORCADE_DATA names, else `../shared/data` beside the repository. Tests that
-/// need one skip where it is not there.
+/// Folder of the real drives: the one that MOTORCADE_DATA names, else `../shared/data` beside the repository. Tests
+/// that need one skip where it is not there.
 inline std::filesystem::path dataFolder() {
   const char* const named = std::getenv("MOTORCADE_DATA");
   return named && *named ? std::filesystem::path(named) : std::filesystem::path(MOTORCADE_SOURCE_DIR "/../shared/data");

@@ -25,7 +25,7 @@ inline Whole turn(const Grid& a, const Grid& b, const Grid& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Of a clockwise triangle a, b, c: positive with d strictly inside its circle, zero with d on it.
+/// Side of the circle of a clockwise triangle a, b, c: positive with d strictly inside, zero with d on it.
 inline Whole circleSide(const Grid& a, const Grid& b, const Grid& c, const Grid& d) {
   const auto lift = [&](const Grid& p) { return (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y); };
   const auto cross = [&](const Grid& p, const Grid& q) {

@@ -11,7 +11,8 @@
 
 namespace motorcade::test {
 
-/// L with L L^T = covariance, in plain loops: most tests include this file, and each would compile Eigen's anew.
+/// Lower triangular L with L L^T = covariance, in plain loops: most tests include this file, and each would compile
+/// Eigen's anew.
 template <int N>
 Eigen::Matrix<double, N, N> lowerRoot(const Eigen::Matrix<double, N, N>& covariance) {
   Eigen::Matrix<double, N, N> L = Eigen::Matrix<double, N, N>::Zero();
@@ -36,7 +37,7 @@ class Noise {
     return static_cast<Integer>(uniform(0, static_cast<double>(n) - 1e-9));
   }
   double gaussian(double sigma = 1.0) { return sigma * normal_(generator_); }
-  /// Independent components.
+  /// Draws independent components.
   template <int N>
   Eigen::Matrix<double, N, 1> gaussian(const Eigen::Matrix<double, N, 1>& sigma) {
     return sigma.unaryExpr([&](double s) { return gaussian(s); });
@@ -81,7 +82,7 @@ double nees(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<double
   return whitened.squaredNorm();
 }
 
-/// Half the width of the interval that the mean of n chi-square values lies in with 95 % probability; the normal
+/// Half the width of the interval that holds the mean of n chi-square values with 95 % probability. The normal
 /// approximation holds to a percent for the hundreds of draws that tests use.
 inline double meanChi2Spread(double degrees_of_freedom, int n) { return 1.96 * std::sqrt(2 * degrees_of_freedom / n); }
 

@@ -67,7 +67,7 @@ class SimulatedTraffic {
     return scene;
   }
 
-  /// Truth.
+  /// True poses.
   SE3 camera(int frame) const { return {Eigen::Matrix3d::Identity(), {0, 0, kDt_s * camera_speed_mps_ * frame}}; }
   const SE3& car(std::size_t c, int frame) const { return T_world_car_[c][frame]; }
   SE3 carInCamera(std::size_t c, int frame) const { return camera(frame).inverse() * car(c, frame); }
@@ -85,7 +85,7 @@ class SimulatedTraffic {
     return {expSO3({0, car.heading_rad, 0}) * upright, {car.x_m, kRoad_m, car.z_m}};
   }
 
-  /// On one of the five visible faces of a car of 4.2 x 1.8 x 1.5 m.
+  /// A point on one of the five visible faces of a car of 4.2 x 1.8 x 1.5 m.
   Eigen::Vector3d pointOnBox() {
     Eigen::Vector3d p = noise_.inBox({-2.1, -0.9, 0.2}, {2.1, 0.9, 1.5});
     const double face = noise_.uniform(0, 3);
@@ -120,7 +120,7 @@ class SimulatedTraffic {
     }
   }
 
-  /// Extends the point's track; a point that comes back gets a new name.
+  /// Extends the point's track; a point that comes back gets a new id.
   void see(ScenePointIndex index, const Eigen::Vector3d& p_cam, bool visible) {
     const auto uvd = visible ? look(p_cam, noise_) : std::nullopt;
     if (!uvd) {

@@ -14,7 +14,7 @@ inline const StereoCamera kRig{720, 720, 620, 188, 0.54, 1242, 375};
 /// Standard deviation of each coordinate (u, v, d) that the simulated observations have.
 inline const Eigen::Vector3d kObservationSigma_px = Eigen::Vector3d::Constant(0.3);
 
-/// A observation with noise; empty outside the image.
+/// An observation with noise; empty outside the image.
 inline std::optional<Eigen::Vector3d> look(const Eigen::Vector3d& p_cam, Noise& noise,
                                            const Eigen::Vector3d& sigma_px = kObservationSigma_px) {
   const auto uvd = kRig.project(p_cam);

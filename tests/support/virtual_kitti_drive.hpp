@@ -126,7 +126,7 @@ struct VirtualKittiDrive {
     return text;
   }
 
-  /// Gives how many pixels each object has.
+  /// Writes the masks, and returns the number of pixels of each object.
   std::map<std::int64_t, int> writeInstances(std::size_t frame, const fs::path& folder) const {
     std::map<std::int64_t, int> pixels;
     if (sequence.truth.instances.empty()) return pixels;

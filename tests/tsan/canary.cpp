@@ -14,7 +14,7 @@
 namespace motorcade {
 namespace {
 
-/// Two threads count in one plain variable.
+/// Race of two threads that count in one plain variable.
 long raceOfThreads() {
   long counter = 0;
   const auto count = [&counter] {
@@ -24,7 +24,7 @@ long raceOfThreads() {
   return counter;
 }
 
-/// A ring of one slot whose index is published without release.
+/// Race of a ring of one slot whose index is published without release.
 long raceOfRing() {
   std::vector<long> slot(1);
   std::atomic<long> pushed{0}, popped{0};
@@ -44,7 +44,7 @@ long raceOfRing() {
   return sum;
 }
 
-/// A stage that is run on several frames at once has a memory.
+/// Race of a stage that has a memory and is run on several frames at once.
 long raceOfStage() {
   long counter = 0;
   Stages stages;

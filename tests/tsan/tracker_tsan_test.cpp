@@ -11,15 +11,15 @@
 #include "tests/interface/tracked_drive.hpp"
 #include "tests/interface/waiting_thread.hpp"
 
-/// The public interface with the real stages, in as many threads as it allows: few frames, small and with little to
-/// see, as instrumented code takes its time.
+/// Tests the public interface with the real stages, in as many threads as it allows. Frames are few, small and with
+/// little to see, as instrumented code takes its time.
 namespace motorcade {
 namespace {
 
 constexpr int kWidth_px = 320, kHeight_px = 96;
 constexpr double kFocal_px = 180, kBaseline_m = 0.54;
 
-/// Squares of many brightnesses, the same at each look.
+/// Brightness of squares of many grays, the same at each look.
 double brightnessAt(double a_m, double b_m) {
   constexpr double kSquare_m = 0.35;
   const auto a = static_cast<std::uint64_t>(std::floor(a_m / kSquare_m) + 1000),
@@ -27,7 +27,7 @@ double brightnessAt(double a_m, double b_m) {
   return static_cast<double>((((a * 2654435761u) ^ (b * 40503u * 97u)) >> 7) % 200);
 }
 
-/// What a camera sees in a corridor: a floor, a ceiling and two walls, each in squares.
+/// Brightness that a camera sees in a corridor: a floor, a ceiling and two walls, each in squares.
 double brightnessSeen(double u_px, double v_px, double x_m, double z_m) {
   constexpr double kWall_m = 5, kHigh_m = 1.6;
   const double right = (u_px - kWidth_px / 2.0) / kFocal_px, down = (v_px - kHeight_px / 2.0) / kFocal_px;
@@ -132,7 +132,7 @@ TEST(TrackerThreads, EndAtAnyMomentWithCallsUnderWay) {
   consumer.join();
 }
 
-/// As a program that is told to stop: another thread closes while pairs come.
+/// Another thread closes while pairs come, as when a program is told to stop.
 TEST(TrackerThreads, CloseAmidPushes) {
   const DriveInMemory drive = corridorDrive(8);
   for (const auto policy : {Tracker::Policy::kReplay, Tracker::Policy::kLive}) {

@@ -6,8 +6,8 @@
 
 #include "backend/elimination/dense_substitution.hpp"
 
-/// Each kernel beside what Eigen does for the same task. The rate "flops" counts a multiplication with its addition as
-/// two.
+/// Measures each kernel beside Eigen's solution of the same task. The rate "flops" counts a multiplication with its
+/// addition as two.
 namespace motorcade {
 namespace {
 
@@ -110,7 +110,7 @@ void BM_OuterProductByEigen(benchmark::State& state) {
   reportFlops(state, outerProductFlops(n, k));
 }
 
-/// A clique's whole elimination: factor, and what passes to its parent.
+/// A clique's whole elimination: its factor, and the contribution to its parent.
 void BM_EliminateClique(benchmark::State& state) {
   const Panels panels(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const int rest = panels.rows - panels.columns;

@@ -6,14 +6,14 @@
 
 namespace motorcade::perf {
 
-/// The batch solution of the first updates of a graph, for more and more of them: each starts from the one before,
+/// Batch solution of the first updates of a graph, for more and more of them. Each starts from the one before,
 /// relinearizes everything, and goes on until nothing moves. Always solved with the solver's default parameters.
 class BatchReference {
  public:
   /// Keeps a reference to the graph.
   explicit BatchReference(const PoseGraph& graph) : feed_(graph, IncrementalSolver::Params{}) {}
 
-  /// `updates` may not go down. False when it does not converge.
+  /// Solves up to `updates`, which may not go down. False when it does not converge.
   bool advanceTo(std::size_t updates);
   const PoseGraphFeed& feed() const { return feed_; }
 
@@ -22,10 +22,10 @@ class BatchReference {
   std::size_t updates_ = 0;
 };
 
-/// Gauss-Newton until nothing moves any more; false when that does not come about.
+/// Iterates Gauss-Newton until nothing moves any more; false when that does not come about.
 bool converge(IncrementalSolver& solver);
 
-/// How much a solution's chi2 lies above the optimum.
+/// Excess of a solution's chi2 over the optimum.
 double excessPercent(double chi2, double optimum);
 
 }  // namespace motorcade::perf

@@ -8,7 +8,7 @@
 
 namespace motorcade::perf {
 
-/// What it took to solve a pose graph, an update per pose or frame.
+/// Cost of solving a pose graph, with an update per pose or frame.
 struct GraphRun {
   std::size_t poses = 0, edges = 0, problems = 0;                       // in the solution; that updates reported
   std::vector<double> cpu_ms, eliminated_scalars, substituted_scalars;  // per update
@@ -22,10 +22,10 @@ struct GraphRun {
 };
 GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& params);
 
-/// How the solver takes edges to poses of long ago, which bend everything in between.
+/// Response of the solver to edges to poses of long ago, which bend everything in between.
 struct ClosureRun {
   std::size_t first_update = 0;  // with such an edge
-  /// After the first: until chi2 is within 0.1 % of the optimum of the graph so far.
+  /// Updates after the first until chi2 is within 0.1 % of the optimum of the graph so far.
   std::optional<std::size_t> updates_until_settled;
   std::size_t unsettled_updates = 0;  // from the first on
   double worst_excess_percent = 0;

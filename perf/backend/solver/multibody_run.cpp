@@ -15,7 +15,7 @@ constexpr int kFirstBin = 1000, kHalfBin = 500;
 constexpr int kAgingFrames = 1000;
 constexpr int kErrorFrames = 10;  // apart, so that errors are independent
 
-/// 1000, 2000, 5000, 10000, ..., as far as their bins do not meet that of the last frame.
+/// Frames 1000, 2000, 5000, 10000, ..., as far as their bins do not meet that of the last frame.
 std::vector<int> binFrames(int frames) {
   std::vector<int> middles;
   for (int decade = kFirstBin; decade < frames; decade *= 10)
@@ -28,7 +28,7 @@ std::vector<int> binFrames(int frames) {
 /// A solver that is driven, and what each update cost.
 class Drive {
  public:
-  /// Memory for the costs of so many frames is there from the start, so that the process does not grow by it.
+  /// Reserves memory for the costs of so many frames at the start, so that the process does not grow by it.
   Drive(const IncrementalSolver::Params& params, int window_frames, int frames)
       : solver_(params), stream_(solver_, window_frames) {
     for (auto* costs : {&update_ms_, &retire_ms_, &eliminated_scalars_, &substituted_scalars_}) {
@@ -37,7 +37,7 @@ class Drive {
     }
   }
 
-  /// One update: what is new, the step, what retires.
+  /// Runs one update: new variables and factors, the step, retirement.
   void update(const SimulatedFrame& frame) {
     const double start_ms = threadCpu_ms();
     stream_.add(frame);
@@ -56,7 +56,7 @@ class Drive {
   const IncrementalSolver& solver() const { return solver_; }
   const MultibodyStream& stream() const { return stream_; }
   std::size_t problems() const { return problems_; }
-  // From one update on.
+  // Quantiles of the updates from one on.
   Quantiles updateTimes_ms(std::size_t from) const { return quantilesOf(std::span(update_ms_).subspan(from)); }
   Quantiles retireTimes_ms(std::size_t from) const { return quantilesOf(std::span(retire_ms_).subspan(from)); }
   Quantiles eliminatedScalars(std::size_t from) const {
@@ -124,7 +124,8 @@ MultibodyAging measureAging(Drive& old, MultibodyScene& scene, const Incremental
           .young_scalars = young.eliminatedScalars(compared).median};
 }
 
-/// Of all factors, at the estimates; the solver's own count holds each as it was when the solver last looked at it.
+/// Cost of all factors at the estimates. The solver's own count holds each factor as it was when the solver last looked
+/// at it.
 double costOf(const IncrementalSolver& solver) {
   const FactorGraph& graph = solver.graph();
   double cost = 0;
@@ -144,7 +145,7 @@ double costOf(const IncrementalSolver& solver) {
   return cost;
 }
 
-/// The cost itself holds that of all that was retired, in which an excess would vanish.
+/// Excess over the converged solution. The cost itself contains that of all that was retired, in which it would vanish.
 double excessOverConverged(IncrementalSolver& solver) {
   const double cost = costOf(solver);
   converge(solver);

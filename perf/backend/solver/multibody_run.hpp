@@ -13,7 +13,7 @@ struct MultibodyOptions {
   std::uint64_t seed = 1;
 };
 
-/// How the solver fares around one length of a run.
+/// Performance of the solver around one length of a run.
 struct MultibodyBin {
   int frame = 0;                                      // in the middle
   Quantiles update_ms, retire_ms;                     // CPU time; retiring is part of the update
@@ -23,8 +23,8 @@ struct MultibodyBin {
   std::size_t held_bytes = 0, heap_bytes = 0, resident_bytes = 0, variables = 0, factors = 0;
 };
 
-/// A long drive's solver beside one that begins late in it, on the same frames, in turns: what they hold differs only
-/// in what was retired long ago, and what else the machine does slows both.
+/// Aging of a long drive's solver: it runs in turns with one that begins late in the drive, on the same frames. What
+/// they hold differs only in what was retired long ago, and the machine's other load slows both.
 struct MultibodyAging {
   static constexpr double kMaxRatio = 1.1;
 
@@ -40,7 +40,8 @@ struct MultibodyRun {
   std::optional<MultibodyAging> aging;  // after the last of the frames; empty where everything is kept
   Quantiles update_ms;                  // of all
   std::size_t problems = 0;             // that updates reported
-  /// At the end, over what Gauss-Newton reaches from there, of one per row of the factors in the window.
+  /// Excess of chi2 at the end over what Gauss-Newton reaches from there, in units of one per row of the factors in the
+  /// window.
   double chi2_excess_percent = 0;
 
   /// Median time of an update in the last bin over that around frame 1000, as the machine's load allows; empty for

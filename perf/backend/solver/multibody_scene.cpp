@@ -10,14 +10,14 @@ constexpr double kBend_m = 80, kBendLength_m = 150;  // x = bend sin(z / length)
 constexpr double kSwingFrames = 150;                 // in which a vehicle falls back and catches up
 constexpr MotionSigma kShake{0.01, 0.002};           // of the camera on its way
 
-/// On the road at z, `right_m` beside its middle, looking along it; axes as a camera's.
+/// Pose on the road at z, `right_m` beside its middle, looking along it; axes as a camera's.
 SE3 roadPose(double z, double right_m) {
   const double heading_rad = std::atan(kBend_m / kBendLength_m * std::cos(z / kBendLength_m));
   const Eigen::Matrix3d rotation = expSO3({0, heading_rad, 0});
   return {rotation, Eigen::Vector3d(kBend_m * std::sin(z / kBendLength_m), 0, z) + right_m * rotation.col(0)};
 }
 
-/// x ahead, y left, z up.
+/// Axes of a body (x ahead, y left, z up) in those of the road.
 SE3 bodyInRoadAxes() {
   Eigen::Matrix3d rotation;
   rotation << 0, -1, 0, 0, 0, -1, 1, 0, 0;

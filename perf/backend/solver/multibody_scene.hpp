@@ -14,7 +14,7 @@ struct MotionSigma {
   double m, rad;
 };
 
-/// What is measured in one frame, and where the camera really is.
+/// Measurements of one frame, and the camera's true pose.
 struct SimulatedFrame {
   struct Object {
     bool is_new;  // takes the slot of one that is gone

@@ -9,18 +9,19 @@
 
 namespace motorcade::perf {
 
-/// Feeds a solver with simulated frames, as the smoother of `motorcade run` does with measured ones: the same
-/// variables, factors and losses, and a window of frames, beyond which poses are marginalized; an object's anchor goes
-/// with its last pose.
+/// Feeds a solver with simulated frames, as the smoother of `motorcade run` does with measured ones. Variables, factors
+/// and losses are the same. Poses beyond a window of frames are marginalized; an object's anchor goes with its last
+/// pose.
 class MultibodyStream {
  public:
   /// A window of 0 keeps everything.
   MultibodyStream(IncrementalSolver& solver, std::size_t window_frames)
       : solver_(solver), window_frames_(window_frames) {}
 
-  /// Variables and factors; then update the solver. The first frame may be any of a scene: what is in view then is new.
+  /// Adds a frame's variables and factors; then update the solver. The first frame may be any of a scene: what is in
+  /// view then is new.
   void add(const SimulatedFrame& frame);
-  /// What is to be marginalized now; forgotten here.
+  /// Returns, and forgets, the variables that are to be marginalized now.
   std::vector<VariableId> takeRetired();
 
   /// Squared error of the newest camera pose relative to one earlier, over its covariance and dimension: 1 on average.

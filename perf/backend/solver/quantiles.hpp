@@ -7,7 +7,7 @@
 
 namespace motorcade::perf {
 
-/// Of a series of costs, one per update; by nearest rank, so that each is the cost of some update.
+/// Quantiles of a series of costs, one per update, by nearest rank, so that each is the cost of some update.
 struct Quantiles {
   double total = 0, median = 0, p99 = 0, max = 0;
 };

@@ -16,7 +16,7 @@ struct SolutionCheck {
     std::size_t updates;
     double excess_percent;
   };
-  /// Of the newest poses, those of the last update, the one that is farthest off: Mahalanobis distance in the marginal
+  /// The newest pose, of those of the last update, that is farthest off: Mahalanobis distance in the marginal
   /// covariance of the batch solution, over the square root of its dimension.
   struct Pose {
     std::size_t updates;

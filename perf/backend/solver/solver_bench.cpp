@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kExitCheckFailed = 1, kExitUsage = 2;
 
-/// Where the tests and scripts look for data: the folder that MOTORCADE_DATA names.
+/// Folder of the data for tests and scripts, which MOTORCADE_DATA names.
 std::filesystem::path dataFolder() {
   const char* const named = std::getenv("MOTORCADE_DATA");
   return named && *named ? named : "../shared/data";
@@ -77,7 +77,7 @@ GraphFigures measure(const std::string& name, const PoseGraph& graph, const Opti
   return figures;
 }
 
-/// False when a check fails.
+/// Measures all graphs; false when a check fails.
 bool measureGraphs(const Options& options, nlohmann::ordered_json& json) {
   bool good = true;
   printGraphHead();

@@ -10,8 +10,8 @@ class App;
 
 namespace motorcade::perf {
 
-/// Options for the solver's parameters, with the solver's own defaults, so that variants can be compared. All that the
-/// benchmark knows of their names is here.
+/// Adds options for the solver's parameters, with the solver's own defaults, so that variants can be compared. The
+/// benchmark knows their names only here.
 void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params);
 nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params);
 

@@ -5,7 +5,7 @@
 #include "frontend/image/patch_alignment.hpp"
 #include "perf/frontend/bench_street.hpp"
 
-/// Items are patches, at all corners of an image 1242 px wide.
+/// Benchmarks whose items are patches, at all corners of an image 1242 px wide.
 namespace motorcade::perf {
 namespace {
 
@@ -33,7 +33,7 @@ void BM_MakeTemplate(benchmark::State& state) {
 }
 BENCHMARK(BM_MakeTemplate)->Arg(7)->Arg(11)->Unit(benchmark::kMicrosecond);
 
-/// From a guess that is off by half a pixel.
+/// Aligns from a guess that is off by half a pixel.
 void BM_AlignPatch(benchmark::State& state) {
   const BenchStreet& street = benchStreet(kWidth_px);
   const auto corners = innerCorners();
@@ -56,7 +56,7 @@ void BM_AlignPatch(benchmark::State& state) {
 }
 BENCHMARK(BM_AlignPatch)->Unit(benchmark::kMicrosecond);
 
-/// From one frame to the next without a guess; the argument is the first level.
+/// Aligns from one frame to the next without a guess; the argument is the first level.
 void BM_AlignCoarseToFine(benchmark::State& state) {
   const BenchStreet& street = benchStreet(kWidth_px);
   const auto corners = innerCorners();
@@ -74,7 +74,7 @@ void BM_AlignCoarseToFine(benchmark::State& state) {
 }
 BENCHMARK(BM_AlignCoarseToFine)->Arg(1)->Arg(2)->Arg(3)->Unit(benchmark::kMicrosecond);
 
-/// Around the true disparity; the argument is the radius of the search, which 0 leaves out.
+/// Refines around the true disparity; the argument is the radius of the search, which 0 leaves out.
 void BM_RefineDisparity(benchmark::State& state) {
   const BenchStreet& street = benchStreet(kWidth_px);
   const auto corners = innerCorners();

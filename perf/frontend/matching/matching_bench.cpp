@@ -39,7 +39,7 @@ void BM_MatchStereo(benchmark::State& state) {
 }
 BENCHMARK(BM_MatchStereo)->Arg(621)->Arg(1242)->Unit(benchmark::kMicrosecond);
 
-/// The same features under the next number, as if the camera went to and fro between two positions.
+/// Renumbers the same features, as if the camera went to and fro between two positions.
 FeaturesPtr renumbered(const Features& features, std::int64_t number) {
   auto frame = std::make_shared<StereoFrame>(*features.frame);
   frame->head.frame = {number};

@@ -13,7 +13,7 @@
 #include "tests/apps/bridge/bridge_process.hpp"
 #include "tests/apps/bridge/bridged_cameras.hpp"
 
-/// `motorcade bridge --images`: the cameras are publishers in the test, the results go to another process.
+/// Tests `motorcade bridge --images`: the test publishes the cameras' images, and the results go to another process.
 namespace motorcade::test {
 namespace {
 
@@ -38,7 +38,7 @@ class BridgedImages : public Bridge {
                    const std::string& topics = "/left/image_raw,/right/image_raw") const {
     return bridge(options, "--images=" + topics);
   }
-  /// Pairs at ten a second, again and again, until it happened.
+  /// Publishes pairs at ten a second, again and again, until it happened.
   bool publishUntil(const CameraPublishers& cameras, const std::function<bool()>& happened) {
     const Camera camera = recording_.camera();
     return waitFor([&] {
@@ -59,7 +59,7 @@ class BridgedImages : public Bridge {
   std::int64_t sent_ = 0;
 };
 
-/// All that is said of a drive but how it fared, which depends on time.
+/// All messages about a drive except its health, which depends on time.
 std::vector<json> resultsIn(const std::string& lines) {
   std::vector<json> messages;
   for (const char* const topic : {"rt/motorcade/pose", "rt/motorcade/odometry", "rt/motorcade/objects",
@@ -68,7 +68,7 @@ std::vector<json> resultsIn(const std::string& lines) {
   return messages;
 }
 
-/// The drive's image of that frame, as the file that it is.
+/// The drive's image of that frame, as the bytes of its file.
 std::string fileOf(StereoSide side, std::int64_t frame) {
   const std::string folder = side == kLeft ? "image_0" : "image_1";
   return contentOf(fs::path(kDrive) / folder / ("00000" + std::to_string(frame) + ".png"));

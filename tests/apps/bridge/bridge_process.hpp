@@ -23,7 +23,7 @@
 #include "motorcade/motorcade.hpp"
 #include "tests/support/matchers.hpp"
 
-/// `motorcade bridge` and its subscriber as processes, and what they are to say.
+/// Processes of `motorcade bridge` and its subscriber, and the messages expected of them.
 namespace motorcade::test {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ using nlohmann::json;
 
 inline constexpr const char* kDrive = MOTORCADE_TINY_SEQUENCE;
 
-/// One that others hardly use, and below the ports that the system gives away.
+/// A domain that others hardly use, and whose ports lie below those that the system assigns.
 inline int unlikelyDomain() { return 60 + ::getpid() % 40; }
 
 inline std::string contentOf(const fs::path& file) {
@@ -40,7 +40,7 @@ inline std::string contentOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// A program that is running; killed at the end where it still does.
+/// A program that is running; it is killed at the end if it still does.
 class Process {
  public:
   Process(const std::vector<std::string>& words, const fs::path& output) : output_(output), id_(::fork()) {
@@ -61,7 +61,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void tell(int signal) const { ::kill(id_, signal); }
-  /// The exit code; -1 where it does not end in time.
+  /// Waits for the exit code; -1 where the program does not end in time.
   int end(std::chrono::seconds patience) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
     int status = 0;
@@ -110,7 +110,7 @@ inline std::vector<Result> trackedHere() {
   return results;
 }
 
-/// The messages of one topic in the order in which they came.
+/// Messages of one topic in the order in which they came.
 inline std::vector<json> messagesOf(const std::string& lines, const std::string& topic) {
   std::vector<json> messages;
   std::istringstream stream(lines);

@@ -12,7 +12,7 @@
 #include "tests/apps/bridge/bridge_json.hpp"
 
 /// Subscribes to the topics of `motorcade bridge` on loopback as a node of ROS 2 would, and writes each message as a
-/// line of JSON: bridge_subscriber DOMAIN SECONDS. Ends when all publishers that came have gone, or after so long.
+/// line of JSON: bridge_subscriber DOMAIN SECONDS. It ends when all publishers that came have gone, or after so long.
 namespace {
 
 using motorcade::test::json;
@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kMostTaken = 64;
 
-/// A topic's reader: reliable as ROS' are, but it keeps all, so that what is missing was not sent.
+/// Reader of a topic: reliable as ROS' are, but it keeps all, so that what is missing was not sent.
 struct Reader {
   std::string topic;
   dds_entity_t reader;

@@ -16,7 +16,7 @@
 #include "tests/support/matchers.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 
-/// What results become as messages of ROS 2, and what the command line of `motorcade bridge` means.
+/// Tests the messages of ROS 2 that results become, and the command line of `motorcade bridge`.
 namespace motorcade::test {
 namespace {
 
@@ -59,7 +59,8 @@ TEST(BridgeMessages, ThePoseIsTheCamerasInTheWorld) {
   EXPECT_NEAR(message.pose.orientation.z, std::sqrt(0.5), kRounding);
 }
 
-/// ROS' perturbation of a pose: of the position, and of the rotation about axes of the parent frame, on the left.
+/// Compares ROS' perturbation of a pose: of the position, and of the rotation about axes of the parent frame, on the
+/// left.
 TEST(BridgeMessages, PoseCovarianceIsTurnedAsFiniteDifferencesSay) {
   const SE3 T = turned({0.4, -1.1, 0.7}, {5, -3, 2});
   const Matrix6d J = numericJacobian(
@@ -75,7 +76,7 @@ TEST(BridgeMessages, PoseCovarianceIsTurnedAsFiniteDifferencesSay) {
   EXPECT_THAT(matrixOfRows(rows), IsNear(Matrix6d(J * covariance * J.transpose()), kTol));
 }
 
-/// Heading to the left, along y of the world: what is uncertain ahead is uncertain in y, a roll is one about y.
+/// Heads to the left, along y of the world: uncertainty ahead is uncertainty in y, and a roll is one about y.
 TEST(BridgeMessages, PoseCovarianceOfAQuarterTurnIsTheHandComputedOne) {
   Vector6d variances;
   variances << 1, 2, 3, 4, 5, 6;

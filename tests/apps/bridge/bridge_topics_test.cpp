@@ -20,7 +20,7 @@
 #include "tests/apps/bridge/bridge_process.hpp"
 #include "tests/support/matchers.hpp"
 
-/// `motorcade bridge` as other processes see it: what a subscriber gets, and what it may do to the bridge.
+/// Tests `motorcade bridge` as other processes see it: what a subscriber gets, and what it may do to the bridge.
 namespace motorcade::test {
 namespace {
 

@@ -9,8 +9,8 @@
 #include "tests/apps/bridge/bridged_cameras.hpp"
 #include "tests/apps/bridge/wire_bytes.hpp"
 
-/// The bytes of cameras' messages against ROS 2's definitions, as bridge_wire_test.cpp has them for results; and how
-/// messages are read.
+/// Compares the bytes of cameras' messages with ROS 2's definitions, as bridge_wire_test.cpp does for results, and
+/// tests how messages are read.
 namespace motorcade::test {
 namespace {
 

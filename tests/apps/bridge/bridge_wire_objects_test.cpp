@@ -5,7 +5,7 @@
 
 #include "tests/apps/bridge/wire_bytes.hpp"
 
-/// The bytes of messages about objects against the definitions of autoware_perception_msgs and vision_msgs.
+/// Compares the bytes of messages about objects with the definitions of autoware_perception_msgs and vision_msgs.
 namespace motorcade::test {
 namespace {
 

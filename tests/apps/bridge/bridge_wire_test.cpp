@@ -9,8 +9,8 @@
 
 #include "tests/apps/bridge/wire_bytes.hpp"
 
-/// The bytes of each message against ROS 2's definitions, written down here by hand, so that a field of apps/bridge/idl
-/// that is missing, exchanged or of another type is found.
+/// Compares the bytes of each message with ROS 2's definitions, which are written down here by hand. A missing,
+/// exchanged or wrongly typed field of apps/bridge/idl is thus found.
 namespace motorcade::test {
 namespace {
 

@@ -51,7 +51,7 @@ class CameraPublishers {
   }
   bool motionIsSubscribed(std::chrono::seconds patience) const { return allAreSubscribed({motion_}, patience); }
 
-  /// Gray of 8 bits, as mono8, or as the rgb8 that has the same gray.
+  /// Publishes gray of 8 bits, as mono8, or as the rgb8 that has the same gray.
   void publish(StereoSide side, const Pair::Image& image, std::int64_t stamp_ns, bool colors = false) const {
     std::vector<std::uint8_t> bytes;
     const auto* const pixels = static_cast<const std::uint8_t*>(image.pixels);
@@ -68,7 +68,7 @@ class CameraPublishers {
     message.data = ddsSequence<decltype(message.data)>(bytes);
     write(images_[indexOf(side)], &message);
   }
-  /// The vehicle's own motion.
+  /// Publishes the vehicle's own motion.
   void publishMotion(double speed_mps, std::int64_t stamp_ns) const {
     const std::string frame_id = "base_link";
     geometry_msgs_msg_dds__TwistWithCovarianceStamped_ message{};
@@ -76,7 +76,7 @@ class CameraPublishers {
     message.twist.twist.linear.x = speed_mps;
     write(motion_, &message);
   }
-  /// The bytes of a file.
+  /// Publishes the bytes of a file.
   void publish(StereoSide side, const std::string& file, std::int64_t stamp_ns) const {
     std::vector<std::uint8_t> bytes(file.begin(), file.end());
     const std::string frame_id = "camera", format = "mono8; png compressed";
@@ -86,7 +86,7 @@ class CameraPublishers {
     message.data = ddsSequence<decltype(message.data)>(bytes);
     write(images_[indexOf(side)], &message);
   }
-  /// Of a rectified pair.
+  /// Publishes the camera_info of a rectified pair.
   void publishInfos(const Camera& camera, std::int64_t stamp_ns) const {
     const std::string frame_id = "camera", model = "plumb_bob";
     for (const StereoSide side : kStereoSides) {
@@ -128,7 +128,7 @@ class CameraPublishers {
         .stamp = {static_cast<std::int32_t>(stamp_ns / kSecond_ns), static_cast<std::uint32_t>(stamp_ns % kSecond_ns)},
         .frame_id = ddsText(frame_id)};
   }
-  /// Reliable ones keep all that is not acknowledged, and wait for room.
+  /// Makes a writer; reliable ones keep all that is not acknowledged, and wait for room.
   dds_entity_t writer(const dds_topic_descriptor_t& type, const std::string& topic, Driver driver) const {
     dds_qos_t* const qos = dds_create_qos();
     if (driver == Driver::kReliable) {

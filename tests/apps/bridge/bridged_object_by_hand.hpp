@@ -14,7 +14,7 @@ inline constexpr std::int64_t kBridgedStamp_ns = 5'000'000'250;
 /// The pose of the camera of `bridgedResult`.
 inline SE3 bridgedCamera() { return turned({0.02, -0.01, 0.6}, {30, -4, 0.5}); }
 
-/// A van ahead that drives a bend, nothing of it along an axis of the world.
+/// A van ahead that drives a bend; neither its axes nor its motion lie along an axis of the world.
 inline Result::Object bridgedObject() {
   const SE3 T_world_body = turned({0.05, -0.1, 1.1}, {42, 9, -0.3});
   Result::Object object;

@@ -13,10 +13,10 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Time in the tests' hands.
+/// A watch on a clock that the tests move.
 class WatchedInput : public testing::Test {
  protected:
-  /// What is told in that time, of cameras at ten hertz.
+  /// Messages in that time, of cameras at ten hertz.
   std::vector<std::string> toldIn(std::chrono::milliseconds time, bool left, bool right, bool paired) {
     std::vector<std::string> told;
     for (const auto end = now_ + time; now_ < end; now_ += 100ms) {

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using Type = ros::Marker::Type;
 
-/// Ahead and to the left of the camera, turned to the left, at 5 m/s.
+/// A car ahead and to the left of the camera, turned to the left, at 5 m/s.
 Result::Object car(std::int64_t id) {
   Result::Object object;
   object.id = id;

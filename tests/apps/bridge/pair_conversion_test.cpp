@@ -17,7 +17,7 @@ constexpr int kWidth = 64, kHeight = 48;
 const std::array<CameraTopics, 2> kCameraTopics{CameraTopics{"/l/image_raw", "/l/camera_info"},
                                                 CameraTopics{"/r/image_raw", "/r/camera_info"}};
 
-/// One whose pixels are given by their place, in samples of one or two bytes.
+/// An image whose pixels are given by their place, in samples of one or two bytes.
 ReceivedImage imageBy(const auto& sample, bool deep = false, int width = kWidth) {
   const auto bytes = std::make_shared<std::vector<std::uint8_t>>();
   for (int y = 0; y < kHeight; ++y)

@@ -14,7 +14,7 @@ using Vector6Map = Eigen::Map<const Vector6d>;
 
 constexpr double kTol = 1e-7;  // of central differences
 
-/// On the roof, looking down and to the left.
+/// Pose of a camera on the roof, looking down and to the left.
 SE3 roof() { return turned({0, 0, 0.3}) * turned({0.02, 0.2, 0}, {1.6, -0.4, 1.5}); }
 
 Result ofCamera() {
@@ -33,7 +33,7 @@ TEST(VehicleResult, IsTheCamerasWithoutAMounting) {
   EXPECT_EQ(vehicle.objects[0].T_world_body, camera.objects[0].T_world_body);
 }
 
-/// The world is the vehicle in the first pair, where the camera's own world is the camera.
+/// The world is the vehicle in the first pair; the camera's own world is the camera there.
 TEST(VehicleResult, HasThePoseOfTheVehicleInItsOwnWorld) {
   const Result camera = ofCamera(), vehicle = seenFromVehicle(camera, roof());
   const SE3 T_world_vehicle = transformOf(vehicle.T_world_cam);

@@ -50,7 +50,7 @@ class Cdr {
     return *this;
   }
   Cdr& count(std::uint32_t count) { return add(count); }
-  /// Padded to four bytes, as payloads of RTPS are; the header's last two bits tell by how much.
+  /// Bytes padded to four, as payloads of RTPS are; the header's last two bits tell by how much.
   Bytes bytes() const {
     Bytes padded = bytes_;
     while (padded.size() % 4 != 0) padded.push_back(0);

@@ -22,7 +22,7 @@ int differingPixels(const Canvas& a, const Canvas& b) {
   return count;
 }
 
-/// How many pixels a drawing in red covers, those at its rim in part.
+/// Number of pixels that a drawing in red covers, those at its rim in part.
 double coveredByRed(const Canvas& canvas) {
   double sum = 0;
   const RgbImage image = canvas.image();

@@ -27,7 +27,7 @@ Image gray() {
   return image;
 }
 
-/// Points all over the image whose partners lie so much lower.
+/// Points all over the image whose partners lie lower by so many rows.
 std::vector<EpipolarMatch> lowered(double rows_px) {
   std::vector<EpipolarMatch> matches;
   for (int v = 10; v < kHeight_px; v += 20)
@@ -35,7 +35,7 @@ std::vector<EpipolarMatch> lowered(double rows_px) {
   return matches;
 }
 
-/// Pixels that are clearly of one of the two colors: of red where rows disagree, of green where they agree.
+/// Counts of pixels that are clearly red, where rows disagree, and green, where they agree.
 std::pair<int, int> redAndGreen(const RgbImage& image, int top, int bottom) {
   int red = 0, green = 0;
   for (int y = top; y < bottom; ++y)

@@ -7,7 +7,7 @@
 #include "tests/apps/program_run.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// `motorcade check` on the rendered drive with faults, and what `motorcade run` makes of them.
+/// Compares `motorcade check` on the rendered drive with faults with `motorcade run` on it.
 namespace motorcade::test {
 namespace {
 
@@ -19,7 +19,7 @@ using testing::Not;
 
 class Check : public Run {
  protected:
-  /// The names of what is found, and whether the exit code says that results would be worthless.
+  /// Names of the findings, and whether the exit code says that results would be worthless.
   struct Found {
     std::vector<std::string> names;
     int exit_code = 0;
@@ -33,7 +33,7 @@ class Check : public Run {
     for (const auto& finding : json["findings"]) found.names.push_back(finding["name"]);
     return found;
   }
-  /// A copy of the drive whose calibration tells so many times the baseline.
+  /// A copy of the drive whose calibration states so many times the baseline.
   fs::path withCalibration(const std::string& name, double factor_of_baseline) {
     fs::path copy = out(name);
     fs::copy(kSequence, copy, fs::copy_options::recursive);
@@ -130,8 +130,8 @@ TEST_F(Check, SaysThatBlackOrMissingImagesTellNothing) {
   EXPECT_THAT(contentOf(out("stdout")), HasSubstr("000000.png"));
 }
 
-/// The same evidence, the same findings, the same exit code: of each kind of fault, at the strength that it has unless
-/// told and weaker, all along and of single frames.
+/// Same evidence, same findings, same exit code for each kind of fault: at its default strength and weaker, over the
+/// whole drive and in single frames.
 TEST_F(Check, AndRunAgreeOnEveryFault) {
   for (const std::string faults : {"drop",
                                    "drop@::3",

@@ -6,7 +6,7 @@
 
 #include "tests/apps/program_run.hpp"
 
-/// What the program answers to what it is told, before it does anything.
+/// Tests the program's answers to its command line, before it does anything.
 namespace motorcade::test {
 namespace {
 
@@ -25,7 +25,7 @@ std::string words(const std::vector<std::string>& arguments) {
 
 class CommandLine : public Run {
  protected:
-  /// Runs the program, which must end so, and gives what it says on both outputs.
+  /// Runs the program, which must end so, and returns the text of both outputs.
   std::string said(const std::string& arguments, int exit_code, const std::string& prefix = "") {
     EXPECT_EQ(motorcade(arguments, prefix), exit_code) << arguments;
     return contentOf(out("stdout")) + contentOf(errors());

@@ -64,7 +64,7 @@ class DrawnDrive : public testing::Test {
     writePng16(maskFile(folder_ / "run/masks", {frame}), mask);
   }
 
-  /// Frames 3, 5 and 7; gives what is printed.
+  /// Draws frames 3, 5 and 7; returns what is printed.
   std::string draw() const {
     testing::internal::CaptureStdout();
     EXPECT_EQ(runDraw({.run = folder_ / "run",

@@ -18,7 +18,7 @@ inline Image grayImage() {
   return image;
 }
 
-/// How far a pixel is from gray.
+/// Distance of a pixel's color from gray.
 inline int colorfulness(const RgbImage& image, int x, int y) {
   const std::uint8_t* pixel = image.at(x, y);
   return std::max({pixel[0], pixel[1], pixel[2]}) - std::min({pixel[0], pixel[1], pixel[2]});

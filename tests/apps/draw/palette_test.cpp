@@ -32,7 +32,7 @@ Vector3d labOf(const Vector3d& linear) {
 }
 
 /// Eyes without one kind of cones (Machado, Oliveira and Fernandes, A physiologically-based model for simulation of
-/// color vision deficiency, 2009, severity 1); the first sees all colors.
+/// color vision deficiency, 2009, severity 1); the first ones see all colors.
 std::array<Matrix3d, 3> eyes() {
   std::array<Matrix3d, 3> eyes;
   eyes[0].setIdentity();

@@ -25,13 +25,13 @@ using testing::Not;
 
 constexpr int kWide_px = 900, kHigh_px = 300;
 
-/// A view, and where the scene's points are in it.
+/// A view, and the places of the scene's points in it.
 struct Seen {
   RgbImage image;
   Marks marks;
   TopMap map;
 
-  /// Of the pixel at meters ahead and to the right.
+  /// Color of the pixel at meters ahead and to the right.
   int colorAt(double ahead_m, double right_m) const {
     const Eigen::Vector2d at = map({right_m, 0, ahead_m});
     return colorfulness(image, static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())));

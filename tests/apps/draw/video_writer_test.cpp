@@ -26,7 +26,7 @@ RgbImage picture(int width, int height, std::uint8_t level) {
   return image;
 }
 
-/// What the tool beside ffmpeg finds in a video: codec, size, pixel format, rate, pictures.
+/// Properties of a video by the tool beside ffmpeg: codec, size, pixel format, rate, pictures.
 std::string probed(const fs::path& file) {
   const std::string command =
       "ffprobe -loglevel error -count_frames -show_entries "
@@ -48,7 +48,7 @@ class Video : public testing::Test {
     fs::permissions(program, fs::perms::owner_all);
     return program;
   }
-  /// Until an error comes, at most some seconds of video.
+  /// Writes until an error comes, at most some seconds of video.
   void writeMany(VideoWriter& writer) const {
     for (int i = 0; i < 200; ++i) writer.write(picture(320, 200, 0));
     writer.finish();

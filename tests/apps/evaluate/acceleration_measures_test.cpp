@@ -42,7 +42,7 @@ std::vector<ComparedFrame> brakingCar() {
   return frames;
 }
 
-/// Chords of an arc are shorter than it, by a part in ten thousand here.
+/// Errors of taking chords for arcs, which are longer by a part in ten thousand here.
 constexpr double kChords_mps2 = 5e-3, kChords_radps2 = 1e-4;
 
 TEST(AccelerationErrors, AreNoneWhereWhatIsToldIsTrue) {

@@ -7,7 +7,7 @@
 namespace motorcade {
 namespace {
 
-/// A label ahead, and a row that places a cuboid of its size off by `aside_m`, turned by `turn_rad`.
+/// A label ahead, and a row whose cuboid has its size, lies `aside_m` beside it and is turned by `turn_rad`.
 ComparedFrame frameWith(double range_m, double aside_m, double turn_rad) {
   ComparedFrame frame;
   frame.objects = {test::labelByHand(7, range_m)};

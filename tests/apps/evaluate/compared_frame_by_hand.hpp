@@ -4,7 +4,7 @@
 
 namespace motorcade::test {
 
-/// A label of a car that moves ahead of us along the camera's z axis, and is asked for.
+/// A counted label of a car that moves ahead of us along the camera's z axis.
 inline TrueObject labelByHand(std::int64_t id, double range_m, double aside_m = 0) {
   TrueObject object;
   object.counted = object.moving = object.ever_moves = true;

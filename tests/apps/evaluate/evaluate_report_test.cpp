@@ -14,7 +14,7 @@
 #include "io/images/image_file.hpp"
 #include "tests/apps/evaluate/evaluated_drive.hpp"
 
-/// What `motorcade evaluate` reads and writes.
+/// Tests the input and output of `motorcade evaluate`.
 namespace motorcade::test {
 namespace {
 

@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 const std::filesystem::path kData = test::dataFolder();
 
-/// What others measured for VISO2-S with their own program; printed with three or four digits.
+/// Figures of VISO2-S by another program; they are printed with three or four digits.
 struct Anchor {
   const char* drive;
   double ate_m, first_pose_m, end_percent, rpe_m, rpe_median_m, rpe_deg, rpe_median_deg;

@@ -59,7 +59,7 @@ class EvaluateDrive : public testing::Test {
     object.covariance = Matrix6d::Identity() * 1e-4;
     return object;
   }
-  /// Writes a run over frames [first, end), after `change` had its way with each estimate.
+  /// Writes a run over frames [first, end), with `change` applied to each estimate.
   template <class Change>
   void writeRun(const std::filesystem::path& name, int first, int end, const Change& change) {
     RunFolderWriter writer(folder_ / name);

@@ -30,7 +30,7 @@ TEST(HotaOf, APerfectResultIsOneInEveryPart) {
     EXPECT_NEAR(part, 1, kHotaTol);
 }
 
-/// Four frames, track 1 in the first half and track 2 in the second: each match has two frames in common with its
+/// Track 1 is there in the first half of four frames, track 2 in the second. Each match shares two frames with its
 /// track, out of the label's four.
 TEST(HotaOf, AnIdentitySwitchInTheMiddleHalvesTheAssociation) {
   const Hota hota =
@@ -42,7 +42,7 @@ TEST(HotaOf, AnIdentitySwitchInTheMiddleHalvesTheAssociation) {
   EXPECT_NEAR(hota.hota, std::sqrt(0.5), kHotaTol);
 }
 
-/// Track 1 in three of the label's four frames, and track 2 once elsewhere: three matches, one missed, one false.
+/// Track 1 is there in three of the label's four frames, track 2 once elsewhere: three matches, one missed, one false.
 TEST(HotaOf, AMissAndAFalseRowCostDetection) {
   const Hota hota =
       hotaOf({frameOfTracks({{2, 0}, {1, 1}}), frameOfTracks({{1, 1}}), frameOfTracks({{1, 1}}), frameOfTracks({})});
@@ -66,10 +66,10 @@ TEST(HotaOf, BoxesThatDoNotFitMatchAtTheLowThresholdsOnly) {
   EXPECT_NEAR(hota.loc_a, (10 * 0.67 + 6 * 0.82 + 3) / 19, kHotaTol);
 }
 
-/// In the middle frame track 2 lies better on the label than track 1, which follows it throughout. Matched by
-/// similarity alone, track 2 would take that frame; the alignment with the whole drive gives it to track 1:
-/// (1 + 0.72 / 1.52 + 1) / (3 + 3 - that) against (0.8 / 1.52) / (3 + 1 - that). So up to 0.7, at 14 thresholds, there
-/// are three matches, all of track 1, and a false row.
+/// Track 2 lies better on the label in the middle frame than track 1, which follows it throughout. Matched by
+/// similarity alone, track 2 would take that frame; the alignment with the whole drive gives it to track 1: (1 + 0.72 /
+/// 1.52 + 1) / (3 + 3 - that) against (0.8 / 1.52) / (3 + 1 - that). So up to 0.7, at 14 thresholds, there are three
+/// matches, all of track 1, and a false row.
 TEST(HotaOf, MatchesPreferTheTrackThatFollowsTheLabel) {
   const Hota hota =
       hotaOf({frameOfTracks({{1, 0.72}}), frameOfTracks({{2, 0.8}, {1, 0.72}}), frameOfTracks({{1, 0.72}})});

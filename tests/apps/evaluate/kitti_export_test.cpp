@@ -128,7 +128,7 @@ class LabeledDrive : public testing::Test {
                   "3 3 Pedestrian 0 0 0 70 12 75 44 1.8 0.6 0.8 1 1.5 6 -2.5\n");
   }
 
-  /// A run whose objects are the labels, their body frames anywhere in them.
+  /// A run whose objects are the labels, with body frames anywhere in them.
   RunFolder runOfLabels(const Sequence& sequence) const {
     const auto camera = readCameraTruth(sequence);
     const auto truths = readObjectTruths(sequence, *camera);

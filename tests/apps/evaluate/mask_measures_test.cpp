@@ -30,9 +30,9 @@ Gray16Image imageOf(const std::vector<std::pair<Rectangle, std::uint16_t>>& rect
   return image;
 }
 
-/// Squares of ten pixels, one two pixels to the right of the other: each has 36 boundary pixels. Of the left one's, the
-/// ten of the left side are 2 px from the other's; the right side's are 0 at the corners, where they meet the other's
-/// upper and lower side, 1 next to them and 2 between (14 in all); of the upper and lower side, one each is 1 px away.
+/// Squares of ten pixels, one two pixels to the right of the other, have 36 boundary pixels each. Of the left one, the
+/// ten of the left side are 2 px from the other's. The right side's are 0 at the corners, where they meet the other's
+/// upper and lower side, 1 next to them and 2 between (14 in all). Of the upper and lower side, one each is 1 px away.
 TEST(MaskMeasures, OfShiftedSquares) {
   const Gray16Image a = imageOf({{{20, 20, 10, 10}, 1}}), b = imageOf({{{22, 20, 10, 10}, 5}});
   EXPECT_NEAR(maskIou({&a, 1}, {&b, 5}), 80.0 / 120, 1e-12);
@@ -41,9 +41,9 @@ TEST(MaskMeasures, OfShiftedSquares) {
   EXPECT_EQ(boundaryDistance_px({&a, 1}, {&a, 1}), 0);
 }
 
-/// At the left border, ten rows of ten pixels against ten rows of twelve. The upper, lower and right side of the first
-/// are 10 + 10 + 8 boundary pixels, of which the right side's are 1, 2, ..., 2, 1 px away (14); of the second they are
-/// 12 + 12 + 8, of which the last two of the upper and lower side are 1 and 2 px away and the right side's 2 px (22).
+/// Ten rows of ten pixels at the left border, against ten rows of twelve. The upper, lower and right side of the first
+/// are 10 + 10 + 8 boundary pixels, of which the right side's are 1, 2, ..., 2, 1 px away (14). Those of the second are
+/// 12 + 12 + 8: the last two of the upper and lower side are 1 and 2 px away, the right side's 2 px (22).
 TEST(MaskMeasures, TheImagesBorderIsNoBoundary) {
   const Gray16Image a = imageOf({{{0, 20, 10, 10}, 1}}), b = imageOf({{{0, 20, 12, 10}, 1}});
   EXPECT_NEAR(boundaryDistance_px({&a, 1}, {&b, 1}).value(), (14 + 22) / (28 + 32.0), kDistanceTol);

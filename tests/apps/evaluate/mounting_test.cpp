@@ -22,7 +22,7 @@ std::vector<SE3> windingDrive() {
 
 const SE3 kT_true_cam(expSO3({0.004, -0.013, 0.006}), {0.3, -0.2, -0.6});
 
-/// What a truth with this mounting tells of a camera's path.
+/// Truth with this mounting along a camera's path.
 std::vector<SE3> truthOf(const std::vector<SE3>& cameras) { return withMounting(cameras, kT_true_cam.inverse()); }
 
 TEST(Mounting, IsFoundWithoutNoiseUpToItsPrior) {

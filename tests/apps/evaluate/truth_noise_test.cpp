@@ -33,7 +33,7 @@ TEST(TruthNoise, WhiteNoiseOfPosesIsFoundInTheErrorsOfSuccessiveMotions) {
         << k;
 }
 
-/// As a wrong calibration does.
+/// Adds errors that last, as those of a wrong calibration do.
 TEST(TruthNoise, ErrorsThatLastAreNone) {
   std::vector<SE3> estimate = arc();
   for (int k = 0; k < kFrames; ++k) estimate[k] = SE3::exp(k * (Vector6d() << 0.001, 0, 1.01, 0, 0.0102, 0).finished());

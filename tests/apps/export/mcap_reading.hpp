@@ -80,7 +80,7 @@ inline std::uint32_t mcapCrc(std::string_view bytes) {
   return static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// What is in the whole chunks of a file, which may be cut off, and between them.
+/// Content of a file: that of its whole chunks, as it may be cut off, and that between them.
 struct McapContent {
   struct Message {
     std::uint32_t sequence = 0;

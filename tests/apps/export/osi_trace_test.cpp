@@ -25,14 +25,14 @@ using osi3::SensorData;
 constexpr int kFrames = 12;
 constexpr double kNear = 1e-9;
 
-/// The axes of a body that drives where the camera looks: ahead, left and up of (right, down, ahead).
+/// Axes of a body that drives where the camera looks: ahead, left and up of (right, down, ahead).
 Eigen::Matrix3d facingAhead() {
   Eigen::Matrix3d world_body;
   world_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   return world_body;
 }
 
-/// 12 m ahead of the first camera, 3 m to its right, its bottom 1.5 m below it; slower than the camera by 4 m/s.
+/// A car 12 m ahead of the first camera, 3 m to its right, its bottom 1.5 m below it; slower than the camera by 4 m/s.
 ObjectEstimate carAt(int index) {
   ObjectEstimate car;
   car.track = {7};
@@ -57,7 +57,7 @@ Matrix6d diagonal(double rho, double phi) {
   return covariance;
 }
 
-/// The camera drives straight ahead at 10 m/s; frame 5 is predicted, frame 9 was of no use.
+/// A camera that drives straight ahead at 10 m/s; frame 5 is predicted, frame 9 was of no use.
 RunFolder drive() {
   RunFolder run{.folder = "runs/drive", .first_frame = 100};
   for (int i = 0; i < kFrames; ++i) {
@@ -93,7 +93,7 @@ class OsiTraceFile : public testing::Test {
     }
     return messages;
   }
-  /// The cars of a drive whose object is changed so in all frames.
+  /// Cars of a drive whose object is changed so in all frames.
   DetectedMovingObject carOf(const std::function<void(ObjectEstimate&)>& change) {
     RunFolder run = drive();
     for (auto& row : run.final.objects) change(row.object);
@@ -170,8 +170,8 @@ TEST_F(OsiTraceFile, ATurnToTheLeftIsPositive) {
 TEST_F(OsiTraceFile, ErrorsComeFromTheCovariances) {
   const osi3::BaseMoving rmse = exported(drive()).at(4).moving_object(0).base_rmse();
   expectAngles(rmse.orientation(), {0.01, 0.02, 0.03});
-  // The center is off by the body's error, by its turn about the origin and by its own: for d = (1, 0.5, 0.75) and
-  // turns (p, q, r) it is (q d_z - r d_y, r d_x - p d_z, p d_y - q d_x).
+  // The center is off by the body's error, by its turn about the origin and by its own error. For d = (1, 0.5, 0.75)
+  // and turns (p, q, r) the turn moves it by (q d_z - r d_y, r d_x - p d_z, p d_y - q d_x).
   const double pp = 1e-4, qq = 4e-4, rr = 9e-4;
   expectVector(rmse.position(), {std::sqrt(1e-2 + 0.09 + qq * 0.5625 + rr * 0.25),
                                  std::sqrt(4e-2 + 0.04 + rr + pp * 0.5625), std::sqrt(9e-2 + 0.01 + pp * 0.25 + qq)});

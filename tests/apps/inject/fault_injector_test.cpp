@@ -23,7 +23,7 @@ bool same(const Image& a, const Image& b) {
   return true;
 }
 
-/// What comes out of an injector, in words.
+/// Output of an injector, and its order in words.
 struct Outcome {
   std::vector<StereoFrame> frames;
   std::string order;  // +3: pair 3 came; -3: it was passed over

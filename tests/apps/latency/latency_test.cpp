@@ -24,7 +24,7 @@ double sumOf(const std::vector<WayPart>& way) {
   return std::accumulate(way.begin(), way.end(), 0.0, [](double sum, const WayPart& part) { return sum + part.ms; });
 }
 
-/// Every stage takes a millisecond.
+/// A frame in which every stage takes a millisecond.
 FrameRow frame(int number) {
   FrameRow row;
   row.head.frame = {number};

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What bash completes behind `motorcade`, and that each command has its manual page: manual_test.sh MOTORCADE [PAGES]
+# Tests what bash completes behind `motorcade`, and that each command has its manual page: manual_test.sh MOTORCADE [PAGES]
 set -euo pipefail
 motorcade=$1 pages=${2:-}
 source "$(dirname "$0")/../../apps/manual/motorcade.bash"

@@ -27,7 +27,7 @@ std::vector<double> ranksOf(const std::vector<double>& differences) {
   return ranks;
 }
 
-/// The share of all 2^n signs that are at least as one-sided, by trying them.
+/// Share of all 2^n signs that are at least as one-sided, by trying them.
 double byAllSigns(const std::vector<double>& differences) {
   const auto ranks = ranksOf(differences);
   const double middle = std::accumulate(ranks.begin(), ranks.end(), 0.0) / 2;

@@ -46,7 +46,7 @@ class MergeBatch : public testing::Test {
             .fingerprint = "f"};
   }
 
-  /// Rows that all claim the same, of the ninth tenth; `hits` is the key of how many are as they say.
+  /// Rows that all claim the same, of the ninth tenth; `hits` is the key of the number that are as they say.
   static nlohmann::json reliabilityOf(const char* hits, int rows, int hit, double claimed) {
     nlohmann::json tenths(10, {{"rows", 0}, {hits, 0}, {"probability_sum", 0}});
     tenths[8] = {{"rows", rows}, {hits, hit}, {"probability_sum", claimed * rows}};
@@ -54,7 +54,7 @@ class MergeBatch : public testing::Test {
     return {{"rows", rows}, {"brier", squares / rows}, {"tenths", tenths}};
   }
 
-  /// Of ten errors along each axis, eight in the least tenth and two in the largest.
+  /// Ten errors along each axis, eight in the least tenth and two in the largest.
   static AxisReliability eightOfTenErrors() {
     AxisReliability reliability;
     for (auto& axis : reliability.errors) axis.front() = 8, axis.back() = 2;

@@ -11,8 +11,8 @@
 #include "tests/apps/pipeline/toy_stages.hpp"
 #include "tests/support/replaced_heap.hpp"
 
-/// Counts what a thread asks of the heap and of mutexes while `counting`. This test is a program of its own, so that
-/// the replacements reach no other.
+/// Counts a thread's calls of the heap and of mutexes while `counting`. This test is a program of its own, so that the
+/// replacements reach no other.
 namespace {
 
 // Volatile: compilers take it that allocating changes no variable of the program.
@@ -64,8 +64,8 @@ TEST(CameraThread, TheCountersSeeTheHeapAndMutexes) {
   EXPECT_EQ(locks, 1);
 }
 
-/// While the pipeline hangs in a frame, all pairs but the newest are dropped, and their images released, by the
-/// camera's thread.
+/// Drops all pairs but the newest, and releases their images, on the camera's thread, while the pipeline hangs in a
+/// frame.
 TEST(CameraThread, NeitherLocksNorAsksTheHeapHoweverManyPairsAreDropped) {
   std::atomic<bool> hangs{true}, in_motion{false};
   ToyStages toy{.work = [&](Stage stage, FrameId) {

@@ -13,8 +13,8 @@
 #include "tests/apps/rendered_drive.hpp"
 #include "tests/support/replaced_heap.hpp"
 
-/// A frame for which the heap refuses one allocation, each in turn, on a short rendered drive behind a car that the
-/// build's test fixture makes. A program of its own, so that the replaced heap reaches no other test.
+/// Refuses one allocation of a frame, each in turn, on a short rendered drive behind a car that the build's test
+/// fixture makes. A program of its own, so that the replaced heap reaches no other test.
 namespace {
 
 // The n-th allocation from now on is refused, on any thread but the test's own; far away when none is to be.
@@ -37,7 +37,7 @@ namespace {
 
 constexpr std::size_t kBroken = 9;  // the frame that lacks memory; the car ahead is followed by then
 
-/// What became of a drive on which an allocation was refused.
+/// Outcome of a drive on which an allocation was refused.
 struct Trial {
   std::vector<PipelineResult> results;
   PipelineEnd end;
@@ -45,7 +45,7 @@ struct Trial {
   long allocations = 0;      // while the pipeline had the frame
 };
 
-/// Frame by frame, so that what is refused belongs to one frame.
+/// Drives frame by frame, so that the refused allocation belongs to one frame.
 Trial driveRefusing(long refused, const Drive& drive, const PipelineConfig& config) {
   Trial trial;
   Pipeline pipeline(config.pipeline, makeStages(config, drive.camera));
@@ -65,7 +65,7 @@ Trial driveRefusing(long refused, const Drive& drive, const PipelineConfig& conf
   return trial;
 }
 
-/// How many allocations of the frame are refused, one in each drive: the first, and some of the others.
+/// Number of allocations that are refused, one in each drive: the first ones of the frame, and some of the others.
 struct Sample {
   std::string backend;
   long first, of_the_rest;
@@ -80,7 +80,7 @@ std::vector<long> allocationsToRefuse(long count, const Sample& sample) {
   return all;
 }
 
-/// One output for each input; the frame may be lost, and says why; those after it are good.
+/// Expects one output for each input: the frame may be lost, with a reason, and those after it are good.
 void expectOneLostFrameAtMost(const Trial& trial, const Drive& drive) {
   ASSERT_EQ(trial.results.size(), drive.frames.size());
   std::size_t finals = trial.end.finals.size();

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 
 constexpr std::int64_t kRefused_ns = -1;
 
-/// What the clock makes of these times; `kRefused_ns` where it refuses.
+/// Times by the clock; `kRefused_ns` where it refuses one.
 std::vector<std::int64_t> read(FrameClock& clock, const std::vector<std::int64_t>& stamps_ns) {
   std::vector<std::int64_t> times;
   for (const std::int64_t stamp : stamps_ns) {

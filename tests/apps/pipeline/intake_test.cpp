@@ -17,7 +17,8 @@ StereoFrame stampedFrame(std::int64_t index) {
   return frame;
 }
 
-/// A frame that enters while another thread closes either is refused or comes out; it does in a few of these rounds.
+/// A frame that enters while another thread closes either is refused or comes out; a few of these rounds hit that
+/// moment.
 class IntakeClosing : public testing::TestWithParam<InputPolicy> {};
 INSTANTIATE_TEST_SUITE_P(Policies, IntakeClosing, testing::Values(InputPolicy::kReplay, InputPolicy::kLive));
 
@@ -59,7 +60,7 @@ class LiveIntake : public testing::Test {
   void push(std::int64_t frames) {
     for (std::int64_t i = 0; i < frames; ++i) intake_.push(stampedFrame(pushed_++));
   }
-  /// The next admitted frame's id, and how many it says were dropped before it: named, and in all.
+  /// The next admitted frame's id, and the dropped frames before it: those it names, and their number in all.
   std::tuple<std::int64_t, std::size_t, std::int64_t> admitted() {
     Job* const job = intake_.next([] { return false; });
     const auto named = job->dropped.size();

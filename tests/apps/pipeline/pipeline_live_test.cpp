@@ -38,8 +38,8 @@ class LiveOverload : public testing::TestWithParam<std::tuple<int, int>> {};
 INSTANTIATE_TEST_SUITE_P(ThreadsAndFactor, LiveOverload,
                          testing::Combine(testing::Values(1, 2, 4), testing::Values(1, 2, 5)));
 
-/// While a frame is in work the camera delivers `factor` more: the newest of them comes next, so that a result is never
-/// older than the pairs of one processing time.
+/// The camera delivers `factor` more pairs while a frame is in work. The newest of them comes next, so that a result is
+/// never older than the pairs of one processing time.
 TEST_P(LiveOverload, ProcessesTheNewestPairEachTime) {
   const auto [threads, factor] = GetParam();
   constexpr std::int64_t kProcessed = 40;
@@ -110,7 +110,7 @@ TEST(PipelineLive, CountsMoreDroppedPairsThanItCanName) {
   EXPECT_EQ(run.summary.dropped, kFrames - 2);
 }
 
-/// One frame is admitted behind the one that stalls, no more: the third is fresh.
+/// One frame is admitted behind the one that stalls, and no more: the third is fresh.
 TEST(PipelineLive, IsFreshWithinThreeFramesAfterAStallOfTheBackEnd) {
   const Outcome run = runThroughAStall(Stage::kIncrementalOptimization, {.threads = 4, .frames_in_flight = 2}, 200);
   ASSERT_GE(run.results.size(), 2u);

@@ -181,7 +181,7 @@ TEST(Pipeline, DropsOldFramesWhenLiveAndAccountsForAll) {
   EXPECT_EQ(idsOf(online), numbersTo(kFrames));
 }
 
-/// As when there is no memory to tell of a frame that was lost for want of memory.
+/// Ends as when there is no memory to tell of a frame that was lost for want of memory.
 TEST(Pipeline, EndsWithTheReasonWhenItCannotTellOfAFrame) {
   ToyStages toys{.work = [](Stage stage, FrameId frame) {
     if (stage == Stage::kTracking && frame.value == 3) throw std::runtime_error("toy trouble");
@@ -218,7 +218,7 @@ TEST(Pipeline, CanBeAbandonedAtAnyMoment) {
   }
 }
 
-/// The stage at work ends, and no other one begins, so that whoever ends a pipeline need not wait for whole frames.
+/// Lets the stage at work end and begins no other, so that whoever ends a pipeline need not wait for whole frames.
 TEST(Pipeline, BeginsNoFurtherStageOnceItIsAbandoned) {
   std::atomic<bool> works{false}, abandoned{false};
   std::atomic<int> later{0};

@@ -46,7 +46,7 @@ class ToyBackend final : public Backend {
   std::vector<FrameEstimate> window_;
 };
 
-/// A circle: each frame turns, so that a world that is not that of the first frame shows.
+/// Measurements on a circle: each frame turns, so that a world that is not that of the first frame shows.
 FrameMeasurementsPtr measurementsOf(std::int64_t frame) {
   FrameMeasurements measurements;
   measurements.head.frame = {frame};

@@ -10,7 +10,7 @@
 
 #include "apps/pipeline/pipeline.hpp"
 
-/// Stages without images, and what the tests of the pipeline do with them.
+/// Stages without images, and runs of the pipeline with them.
 namespace motorcade {
 
 inline constexpr std::int64_t kPeriod_ns = 100'000'000;

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr StereoCamera kCamera{
     .fx_px = 60, .fy_px = 60, .cx_px = 50, .cy_px = 30, .baseline_m = 0.5, .width_px = 100, .height_px = 60};
 
-/// What is said of an item that cannot be used; empty where it can.
+/// Complaint about an item that cannot be used; empty where it can.
 std::string complaintAbout(const std::string& item) {
   try {
     ignoredPixels({item}, kCamera);

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What is said of a drive of 20 frames, frame by frame.
+/// Messages about a drive of 20 frames, frame by frame.
 std::vector<std::string> saidOf(double speed_mps, double period_s, double stamp_unit_s, int lost_every = 100) {
   Plausibility plausibility;
   std::vector<std::string> said;

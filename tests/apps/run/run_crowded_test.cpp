@@ -13,7 +13,7 @@ namespace {
 
 class CrowdedRun : public Run {
  protected:
-  /// Drift of the camera, whose truth is exact [m].
+  /// Drift of the camera against an exact truth [m].
   double drift_m(const fs::path& sequence, const std::string& options = "") {
     EXPECT_EQ(run("out", "--force " + options, sequence), 0) << contentOf(errors());
     return evaluate("out", sequence)["final"]["camera"]["ate_m"]["rmse"].get<double>();

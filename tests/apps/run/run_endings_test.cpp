@@ -6,7 +6,7 @@
 #include "io/results/run_folder.hpp"
 #include "tests/apps/program_run.hpp"
 
-/// How `motorcade run` ends when something else ends it, and what it leaves.
+/// Tests how `motorcade run` ends when something else ends it, and what it leaves.
 namespace motorcade::test {
 namespace {
 
@@ -49,7 +49,7 @@ TEST_F(Run, LeavesFinalsWhenItIsKilled) {
   }
 }
 
-/// What settles is of the same frames as what is final, and nearly the same.
+/// Settled estimates are of the same frames as the final ones, and nearly the same.
 TEST_F(Run, SettledEstimatesDoNotChangeTheFinalOnes) {
   ASSERT_EQ(run("late"), 0);
   ASSERT_EQ(run("early", "--set backend.settling_s=0.2"), 0);

@@ -8,7 +8,7 @@
 #include "io/results/run_folder.hpp"
 #include "tests/apps/program_run.hpp"
 
-/// What `motorcade run` answers to inputs, outputs and settings that cannot work.
+/// Tests the answers of `motorcade run` to inputs, outputs and settings that cannot work.
 namespace motorcade::test {
 namespace {
 
@@ -144,8 +144,6 @@ TEST_F(Run, AnswersSettingsThatCannotWorkWithTheKeyAndItsRange) {
     EXPECT_THAT(contentOf(errors()), HasSubstr("unknown key")) << setting;
   }
 }
-
-/// Real frames with two lead cars; the tests that need them are skipped where the data is absent.
 
 }  // namespace
 }  // namespace motorcade::test

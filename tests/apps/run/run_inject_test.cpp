@@ -5,7 +5,7 @@
 #include "io/results/run_folder.hpp"
 #include "tests/apps/program_run.hpp"
 
-/// What becomes of a drive with faults: `motorcade run --inject`.
+/// Tests `motorcade run --inject`: the outcome of a drive with faults.
 namespace motorcade::test {
 namespace {
 

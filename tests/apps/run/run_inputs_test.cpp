@@ -16,7 +16,7 @@
 #include "tests/apps/program_run.hpp"
 #include "tests/support/data_folder.hpp"
 
-/// Runs whose cameras the user tells, or that are rectified on the way.
+/// Tests runs whose cameras the user states, or that are rectified on the way.
 namespace motorcade::test {
 namespace {
 
@@ -42,7 +42,7 @@ BentRig bentRig(const StereoCamera& camera) {
           .R_right_raw = expSO3({-0.008, 0.009, -0.01})};
 }
 
-/// Where each pixel that a camera of the rig would have taken lies in the rectified image; beyond that, at its edge.
+/// Place in the rectified image of each pixel that a camera of the rig would have taken; beyond it, at its edge.
 std::vector<Eigen::Vector2d> sourcesOf(const StereoCamera& camera, const LensCamera& lens, const Eigen::Matrix3d& R) {
   const LensModel model(lens);
   const auto clamped = [](double value, int size) { return std::clamp<double>(value, 0, size - 1.001); };

@@ -17,7 +17,7 @@ using testing::Not;
 
 class RunInstances : public Run {
  protected:
-  /// Every third frame's.
+  /// Labels of every third frame.
   fs::path labels() const {
     fs::path folder = out("labels");
     fs::create_directories(folder);
@@ -46,7 +46,7 @@ TEST_F(RunInstances, LabelsOfEveryThirdFrameAreTakenAndRemembered) {
   EXPECT_EQ(summary("plain")["instances"], "");
 }
 
-/// Masks and boxes to 30 m, by how much of them is true.
+/// Overlap of masks and boxes to 30 m with the truth.
 struct Overlap {
   double masks, boxes;
   explicit Overlap(const nlohmann::json& measures)

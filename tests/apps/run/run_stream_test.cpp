@@ -42,7 +42,7 @@ class RunStream : public Run {
   int runPiped(const std::string& name, const fs::path& stream, const std::string& options) {
     return motorcade("run - --out " + out(name).string() + " " + options, "cat " + stream.string() + " | ");
   }
-  /// A run of what a shell's command writes.
+  /// Runs the program on the output of a shell's command.
   int runOf(const std::string& command, const std::string& options = "--side-by-side --camera 700,700,600,180,0.5") {
     return motorcade("run - --out " + out("refused").string() + " " + options, command + " | ");
   }
@@ -115,7 +115,7 @@ TEST_F(RunStream, RunsTheFramesThatAreAskedForAtThePaceThatIsAskedFor) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("before the first of --frames"));
 }
 
-/// However many pairs are in time: with hardly one no motion is measured, which ends a run with exit code 3.
+/// However many pairs are in time. With hardly one no motion is measured, which ends a run with exit code 3.
 TEST_F(RunStream, LiveTakesTheNewestPairAndCountsTheOthers) {
   const fs::path stream = streamOf(kSequence, StereoPacking::kSideBySide);
   EXPECT_THAT(runPiped("live", stream, "--side-by-side --live " + rendered()), AnyOf(0, 3)) << contentOf(errors());
@@ -192,7 +192,7 @@ TEST_F(RunStream, StreamsThatCannotBeUsedAreNamed) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("the stream ends after 0 pairs"));
 }
 
-/// They are refused before anything is read, so that nobody waits for a camera to learn of them.
+/// Options are refused before anything is read, so that nobody waits for a camera to learn of them.
 TEST_F(RunStream, OptionsThatAStreamCannotMeetAreRefused) {
   const std::string camera = "--camera 700,700,600,180,0.5 ", both = camera + "--side-by-side ";
   const auto refused = [&](const std::string& options) {

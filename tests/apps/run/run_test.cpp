@@ -201,6 +201,7 @@ TEST_F(Run, AccountsForEveryFrameOfALiveCameraThatIsTooFast) {
   EXPECT_EQ(folder.final.camera.size(), kFrames);
 }
 
+/// Runs on real frames with two lead cars; the tests are skipped where the data is absent.
 class RealRun : public Run {
  protected:
   void SetUp() override {

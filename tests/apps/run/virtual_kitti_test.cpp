@@ -5,11 +5,12 @@
 #include "tests/support/data_folder.hpp"
 #include "tests/support/virtual_kitti_drive.hpp"
 
-/// A rendered drive that is laid out as Virtual KITTI 2 is run and measured as it is in its own layout.
+/// Compares a rendered drive that is laid out as Virtual KITTI 2 with the same drive in its own layout: runs and
+/// measures.
 namespace motorcade::test {
 namespace {
 
-/// Numbers that differ by more than printing does, each by its place.
+/// Compares numbers, which may differ by no more than printing does, each by its place.
 void expectNear(const nlohmann::json& a, const nlohmann::json& b, const std::string& place) {
   constexpr double kTolerance = 1e-5;  // of sums of values that were printed with twelve digits
   ASSERT_EQ(a.type() == nlohmann::json::value_t::null, b.type() == nlohmann::json::value_t::null) << place;
@@ -66,7 +67,7 @@ TEST_F(VirtualKitti, ARenderedDriveIsMeasuredAsInItsOwnLayout) {
   expectTheSame(kSequence, {"/final", "/online", "/masks", "/covariance", "/worst_frames"});
 }
 
-/// Its labels do not tell what is hidden, so that other objects count.
+/// Labels do not tell what is hidden, so that other objects count.
 TEST_F(VirtualKitti, TheCameraOfADriveOfAnotherRendererIsMeasuredAsInItsOwnLayout) {
   const fs::path street = dataFolder() / "rendered_street";
   if (!fs::exists(street)) GTEST_SKIP() << street << " is not there";

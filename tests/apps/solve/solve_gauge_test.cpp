@@ -55,6 +55,7 @@ TEST_F(SolveGauge, AFixedPoseInSpaceStaysWhereItsVertexIs) {
               IsNearPose(T_world_2 * SE3(Eigen::Matrix3d::Identity(), {-2, 0, 0}), kTol));
 }
 
+/// Three poses on a line whose ends are held one meter too far apart: the edges' weights share it at the middle one.
 TEST_F(SolveGauge, SeveralFixedPosesAllStayAndTheEdgesGiveWay) {
   const std::string ends = "VERTEX_SE2 4 1 0 0\nVERTEX_SE2 6 4 0 0\nFIX 4 6\n",
                     edges =
@@ -113,6 +114,7 @@ TEST_F(SolveGauge, FixLinesThatHoldNothingAreNamed) {
   EXPECT_THAT(planarPose(0), IsNearPose(SE2(0, {1, 2}), kExact));
 }
 
+/// Each part has a pose that stays: its fixed one or its first.
 TEST_F(SolveGauge, PartsThatNothingJoinsAreSolvedByThemselves) {
   const std::string main = quarterTurn(0, 1) + quarterTurn(1, 2),
                     loop = quarterTurn(10, 11) + quarterTurn(11, 12) + "EDGE_SE2 12 10 1 1 3" + kUnit3;

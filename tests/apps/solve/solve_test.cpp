@@ -66,10 +66,6 @@ TEST_F(Solve, NeverStartsFromTheValuesOfVertices) {
       << "but the first pose stays";
 }
 
-/// Three poses on a line whose ends are held one meter too far apart: the middle one shares it, by its edges' weights.
-
-/// Each part has a pose that stays: its fixed one or its first.
-
 TEST_F(Solve, WeighsContradictionsInSpaceByTheirInformation) {
   // Two motions of one meter and one of five between the same poses, with unit information: chi2 = 1/3 of (5 - 2)^2.
   const json result = solved(ahead(0, 1) + ahead(1, 2) + "EDGE_SE3:QUAT 0 2 5 0 0 0 0 0 1" + kUnit6);
@@ -171,10 +167,8 @@ TEST_F(Solve, AJointThatSaysNextToNothingIsNamedWithItsMend) {
                                HasSubstr("bring their information closer together")));
 }
 
-/// All poses wait for the hub, which is eliminated last: before the others it would make them a dense system, for
-
-/// hours.
-
+/// All poses wait for the hub, which is eliminated last. Before the others it would make them a dense system, which
+/// takes hours.
 TEST_F(Solve, AStarWhoseHubComesLastTakesNoLongerThanOthers) {
   constexpr int kPoses = 20'000;
   std::string star;

@@ -24,7 +24,7 @@ inline const std::string kUnit6 = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n"
 inline std::string quarterTurn(int from, int to) {
   return "EDGE_SE2 " + std::to_string(from) + " " + std::to_string(to) + " 1 0 1.5707963267948966" + kUnit3;
 }
-/// The same backwards.
+/// The same motion backwards.
 inline std::string quarterTurnBack(int from, int to) {
   return "EDGE_SE2 " + std::to_string(from) + " " + std::to_string(to) + " 0 1 -1.5707963267948966" + kUnit3;
 }
@@ -36,18 +36,18 @@ inline std::string ahead(int from, int to) {
 /// Runs the program in a folder of its own.
 class SolvedGraph : public testing::Test {
  protected:
-  /// Runs the program and gives its exit code.
+  /// Runs the program and returns its exit code.
   int solve(const std::filesystem::path& graph, const std::string& options = "", const std::string& prefix = "") {
     const std::string command = prefix + MOTORCADE_PROGRAM + " solve " + graph.string() + " --json " +
                                 (folder_ / "solve.json").string() + " --out " + (folder_ / "out.g2o").string() + " " +
                                 options + " >" + (folder_ / "stdout").string() + " 2>" + (folder_ / "stderr").string();
     return WEXITSTATUS(std::system(command.c_str()));
   }
-  /// Solves a graph that must be accepted, and gives what the program says of it.
+  /// Solves a graph that must be accepted, and returns the program's results.
   nlohmann::json solved(const std::string& content, const std::string& options = "") {
     return solvedFile(folder_.write("graph.g2o", content), options);
   }
-  /// Solves a graph that leaves something open, and gives what the program says of it.
+  /// Solves a graph that leaves something open, and returns the program's results.
   nlohmann::json unsolved(const std::string& content, const std::string& options = "") {
     EXPECT_EQ(solve(folder_.write("graph.g2o", content), options), 3);
     EXPECT_THAT(folder_.read("stderr"), testing::HasSubstr("graph.g2o: could not be solved: "));

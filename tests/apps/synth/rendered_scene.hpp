@@ -6,7 +6,7 @@
 
 #include "apps/synth/rendering/renderer.hpp"
 
-/// What the tests of rendered scenes share.
+/// Camera and rays that the tests of rendered scenes share.
 namespace motorcade::synth {
 
 /// A third of KITTI's images, so that scenes are quickly rendered.
@@ -28,7 +28,7 @@ inline std::vector<Eigen::Vector2d> pixelsOf(const Rendering& rendering, const S
   return pixels;
 }
 
-/// Where a ray meets the nearest of all parts, tried one by one; t_max if none.
+/// Distance at which a ray meets the nearest of all parts, tried one by one; t_max if none.
 inline float nearestOfAll(const FrameScene& frame, const Vec3& origin, const Vec3& direction, float t_min,
                           float t_max) {
   for (std::uint32_t i = 0; i < frame.items().size(); ++i) {

@@ -67,7 +67,7 @@ TEST(SynthMixedScenes, EveryLabelHasItsMaskAndEveryMaskItsLabel) {
   }
 }
 
-/// Whether someone at a point of the map, of this radius, stands in a fixture's lower parts.
+/// True when someone at a point of the map, of this radius, stands in a fixture's lower parts.
 bool standsIn(const Fixture& fixture, const Eigen::Vector3d& p_map, float radius_m) {
   constexpr float kOverhead_m = 1.9F;
   const Eigen::Vector3d p = fixture.T_map_body.inverse() * p_map;

@@ -255,7 +255,7 @@ TEST(SynthSequence, AShakeMovesTheRightImageAlone) {
   EXPECT_NE(content(folder / "still/image_1/000000.png"), content(folder / "shaken/image_1/000000.png"));
 }
 
-/// As far as the shifts of observations say it: of a far point, as rays are shifted where they are infinitely long.
+/// Compares rays with the shifts of a far point's observations, as rays are shifted where they are infinitely long.
 TEST(SynthLens, PixelsOfBothCamerasTakeTheRaysThatObservationShiftsSay) {
   const StereoCamera camera = kittiCamera();
   CalibrationErrors errors;

@@ -178,7 +178,7 @@ TEST_F(ManifestFile, TheRootMayNameAVariableOrTheHomeFolder) {
   EXPECT_EQ(read("root = \"~/sub\"" + drive).root, fs::path(std::getenv("HOME")) / "sub");
 }
 
-/// The paths of a table or list, as people write it first.
+/// Forms in which people first write the paths of a table or list.
 class ManifestTable : public ManifestFile, public testing::WithParamInterface<std::pair<const char*, std::string>> {};
 
 TEST_P(ManifestTable, IsTakenForWhatItSays) {

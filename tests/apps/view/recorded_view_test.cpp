@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A run that is over, as the page is told of it.
+/// A run that is over, as the page gets it.
 class ViewOfARun : public Run {
  protected:
   std::unique_ptr<RecordedView> view(const std::string& name, const SE3& T_shown_run = SE3()) const {

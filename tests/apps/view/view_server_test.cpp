@@ -46,7 +46,7 @@ class ToySource : public PageSource {
   const PageSource* other = nullptr;
 };
 
-/// A client that says what the test wants, also what no browser would.
+/// A client that sends whatever the test wants, also what no browser would.
 class Client {
  public:
   explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -68,7 +68,7 @@ class Client {
   void say(const std::string& text) const {
     EXPECT_EQ(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL), std::ssize(text));
   }
-  /// What came until the end of the answer, or until it holds a text.
+  /// Text that came until the end of the answer, or until it holds `until`.
   std::string hear(const std::string& until = "") const {
     std::string answer;
     std::array<char, 4096> part{};

@@ -24,7 +24,7 @@ using testing::SizeIs;
 constexpr int kWidth_px = 480, kHeight_px = 240;
 constexpr StereoCamera kWallCamera{300, 300, 240, 120, 0.5, kWidth_px, kHeight_px};
 
-/// A wall full of spots, toward which the cameras drive. It leans, so that what is lower in the image is nearer.
+/// A wall full of spots, toward which the cameras drive. It leans, so that its lower parts are nearer.
 class Wall {
  public:
   Wall() : gray_(kSide_px * kSide_px) {
@@ -40,7 +40,7 @@ class Wall {
     }
   }
 
-  /// A camera's view at a frame, its content so many pixels farther to the left in the middle row, and less above it.
+  /// View of a camera at a frame, its content so many pixels farther to the left in the middle row, and less above it.
   Image seen(int frame, double left_px, ImagePool& pool, double lean = 0.8) const {
     const double scale = 1.6 * std::pow(0.97, frame % kFramesOfApproach);
     Image image = pool.acquire(kWidth_px, kHeight_px);
@@ -85,7 +85,7 @@ class Drive {
     pair.right = wall_.seen(frame, kDisparity_px, pool_);
     return pair;
   }
-  /// Shows so many frames to a watch; what it finds, with the frame at which it does.
+  /// Shows so many frames to a watch; returns its findings, with the frame of each.
   std::vector<std::pair<int, RigFinding>> watched(RigWatch& watch, int frames, const Change& change) {
     std::vector<std::pair<int, RigFinding>> found;
     for (int frame = 0; frame < frames; ++frame) {

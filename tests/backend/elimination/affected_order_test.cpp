@@ -18,7 +18,7 @@ namespace {
 using test::RandomWorld;
 using testing::UnorderedElementsAreArray;
 
-/// A long chain with a few short cuts, and what an update would eliminate anew of it.
+/// A long chain with a few short cuts, and the part that an update would eliminate anew.
 struct ChainWithShortcuts {
   ChainWithShortcuts(std::uint64_t seed, std::size_t count) : world(seed, RandomWorld::Kind::kPlane) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +60,7 @@ struct ChainWithShortcuts {
   std::vector<VariableId> variables;
 };
 
-/// Factors between each variable and the nearest touched one, by relaxation until nothing changes.
+/// Number of factors between each variable and the nearest touched one, by relaxation until nothing changes.
 std::vector<int> distances(const ChainWithShortcuts& scene, std::span<const VariableId> touched) {
   constexpr int kFar = 1 << 20;
   std::vector<int> distance(scene.graph.slots(), kFar);
@@ -79,7 +79,7 @@ std::vector<int> distances(const ChainWithShortcuts& scene, std::span<const Vari
   return distance;
 }
 
-/// The bands end at distances 0, 1, 3, 7 and 15; all beyond is one.
+/// Band of a distance: bands end at distances 0, 1, 3, 7 and 15; all beyond is one.
 int bandOf(int distance) {
   int band = 0;
   for (const int last : {0, 1, 3, 7, 15}) band += distance > last;
@@ -117,7 +117,7 @@ TEST(AffectedOrder, DistancesGoThroughTheWholeGraph) {
   }
 }
 
-/// As an offset that all measurements share does not bring them nearer to each other.
+/// An offset that all measurements share does not bring them nearer to each other.
 TEST(AffectedOrder, DistancesDoNotGoThroughWhatVeryManyFactorsShare) {
   ChainWithShortcuts scene(3, 200);
   const std::vector touched{scene.variables.back()};

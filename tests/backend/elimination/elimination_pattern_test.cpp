@@ -44,7 +44,7 @@ EliminationPattern analyzed(const Problem& problem) {
   return pattern;
 }
 
-/// What each position meets when it is eliminated, by elimination of the graph of the terms.
+/// Positions that each position meets when it is eliminated, by elimination of the graph of the terms.
 std::vector<std::set<int>> eliminated(const Problem& problem) {
   std::vector<std::set<int>> later(problem.count + problem.boundary);
   const auto join = [&](const auto& clique) {

@@ -37,7 +37,7 @@ struct Drive {
   int relinearized = 0;
 };
 
-/// Of a tree: how many cliques have no update matrix, and how many of them lie above each other in a row.
+/// Number of cliques without an update matrix in a tree, and the most of them above each other in a row.
 struct Without {
   int cliques = 0, in_a_row = 0;
 

@@ -62,8 +62,7 @@ TEST(ConstantTwistFactor, JacobianMatchesFiniteDifferences) {
   }
 }
 
-/// A change of the twist by one standard deviation of what the noise makes of it costs one: (dt^3/3, dt^2/2; dt^2/2,
-/// dt).
+/// A change of the twist by one standard deviation of the integrated noise, (dt^3/3, dt^2/2; dt^2/2, dt), costs one.
 TEST(ConstantTwistFactor, WhitensByTheIntegratedNoise) {
   const ConstantTwistFactor factor(variables(false), SE3{}, kDt_s, kDensity);
   Eigen::Matrix2d Q;

@@ -34,7 +34,7 @@ struct Bend {
   Eigen::Vector3d velocity_mps(int frame) const { return at(frame).rotation() * twist.head<3>(); }
 };
 
-/// Plain: noise that does not adapt, and no weights.
+/// Parameters of a plain filter: noise that does not adapt, and no weights.
 ObjectFilter::Params plain() {
   ObjectFilter::Params params;
   params.adapt_process_noise = false;

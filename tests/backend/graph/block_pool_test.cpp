@@ -73,7 +73,7 @@ TEST(BlockPool, NeighborsThatComeBackAreOneBlockAgain) {
   }
 }
 
-/// What a solver does whose matrices grow and shrink: each size has its largest demand at another time.
+/// Imitates a solver whose matrices grow and shrink: each size has its largest demand at another time.
 TEST(BlockPool, HoldsLittleMoreThanTheLargestDemand) {
   BlockPool pool;
   test::Noise noise(3);

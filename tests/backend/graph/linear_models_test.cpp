@@ -104,7 +104,7 @@ TEST(LinearModels, ACorrectedModelMeetsTheFactorWithItsFormerJacobian) {
   });
 }
 
-/// Holds a model at zero; elsewhere it is another one.
+/// Holds a model at zero; elsewhere it has another one.
 class HoldingFactor final : public InformationFactor {
  public:
   explicit HoldingFactor(VariableId v) : InformationFactor({v}, 4) {

@@ -22,7 +22,7 @@ constexpr VariableId kI{0}, kJ{1};
 constexpr double kTol = 1e-5;  // of central differences with a step of 1e-6, on whitened residuals of up to a hundred
 constexpr double kFactorRounding = 1e-9;  // of some dozen operations on numbers of up to a thousand
 
-/// Jacobians against finite differences, both residuals against each other, the cost against e^T Omega e.
+/// Checks Jacobians against finite differences, both residuals against each other, the cost against e^T Omega e.
 void checkFactor(const JacobianFactor& factor, const std::vector<Value>& values, const Eigen::VectorXd& e,
                  const Eigen::MatrixXd& information) {
   std::vector<const Value*> pointers;
@@ -95,7 +95,7 @@ TEST(RelativePoseFactorSE2, WrapsTheAngleOfItsResidual) {
   }
 }
 
-/// Information of any rank, its parts of any units: no root of Cholesky's may be there.
+/// Tests information of any rank, its parts of any units: no root of Cholesky's may be there.
 TEST(RelativePoseFactorSE3, TakesInformationThatLeavesDirectionsOpen) {
   Noise noise(9);
   for (int rank = 0; rank < 6; ++rank) {

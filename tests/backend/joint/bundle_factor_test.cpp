@@ -64,7 +64,7 @@ struct BodyInFewFrames {
         eliminateLandmarks(kRig, landmark_noise, landmarks, pose, T_cam_body, offset_px));
     noise = landmark_noise;
   }
-  /// Of the landmarks fitted anew at the present values.
+  /// Cost of the landmarks fitted anew at the present values.
   double freshCost() const {
     const auto fresh = eliminateLandmarks(kRig, noise, landmarks, pose, factor->posesFromCamera(pointers()),
                                           std::get<SmallVector>(values.back())[0]);

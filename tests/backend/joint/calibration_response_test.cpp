@@ -16,8 +16,8 @@ using test::PointDrive;
 
 constexpr FrameId kNow{20}, kBefore{kNow.value - kCameraCovarianceFrames};
 
-/// Points at rest, seen without noise but weighed as if with a quarter of a pixel, and an exact odometry. They are few:
-/// the response knows all of them, as the estimate does.
+/// A street of points at rest, seen without noise but weighed as if with a quarter of a pixel, and an exact odometry.
+/// The points are few: the response knows all of them, as the estimate does.
 PointDrive::Options exactStreet() {
   PointDrive::Options options{.sigma_px = 0.0025, .claimed = 100, .static_points = 80, .drive = {}};
   options.drive.frames = static_cast<int>(kNow.value) + 1;
@@ -41,10 +41,10 @@ std::unique_ptr<JointGraph> afterDrive(const Change& change = [](auto&) {}) {
   return graph;
 }
 
-/// Of the standard deviations: larger errors of the lens make residuals so large that they count less.
+/// Part of the standard deviations: larger errors of the lens make residuals so large that they count less.
 constexpr double kPart = 0.1;
 
-/// As a rig observes that has a part of the error `k`.
+/// Change of the observations in a rig that has a part of the error `k`.
 Change observedWith(int k) {
   return [k](FrameMeasurements& measurements) {
     for (PointMeasurement& m : measurements.at_rest) {

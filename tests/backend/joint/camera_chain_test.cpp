@@ -1,4 +1,4 @@
-/// How the camera's poses are linked where nothing is seen.
+/// Tests how the camera's poses are linked where nothing is seen.
 
 #include <cmath>
 #include <memory>
@@ -22,8 +22,8 @@ struct Frames {
   bool contains(int frame) const { return frame >= begin && frame < end; }
 };
 
-/// Nothing is seen in the dark frames; the odometry of the first frame after them spans them all, but for a start in
-/// the dark, whose first frame has nothing to refer to.
+/// Measures a drive of which nothing is seen in the dark frames. The odometry of the first frame after them spans them
+/// all, except for a start in the dark, whose first frame has nothing to refer to.
 FrameMeasurementsPtr measureWithDark(PointDrive& drive, int frame, const Frames& dark) {
   FrameMeasurements m = *drive.measure(frame);
   if (dark.contains(frame)) {
@@ -45,8 +45,8 @@ struct Path {
   std::vector<FrameEstimate> online, finals;
 };
 
-/// The same, with what the vehicle's own sensors tell of each step; of the first frame after the dark, images tell
-/// nothing.
+/// The same with the vehicle's own sensors, which tell each step; images tell nothing of the first frame after the
+/// dark.
 FrameMeasurementsPtr measureWithSensors(PointDrive& drive, int frame, const Frames& dark) {
   FrameMeasurements m = *measureWithDark(drive, frame, dark);
   if (frame == 0) return std::make_shared<const FrameMeasurements>(std::move(m));
@@ -77,7 +77,7 @@ Path follow(std::uint64_t seed, const Frames& dark, Measure measure = measureWit
   return path;
 }
 
-/// Of the motion from frame `from` to frame `to`.
+/// Error of the motion from frame `from` to frame `to`.
 double motionError_m(const Path& path, int from, int to) {
   const test::SimulatedDrive truth(1, {});
   const SE3 found = path.finals[from].T_world_cam.inverse() * path.finals[to].T_world_cam;

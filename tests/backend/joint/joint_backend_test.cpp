@@ -159,7 +159,7 @@ TEST(JointBackend, AlignmentToKnownLandmarksIsAsExactAsTheirElimination) {
   EXPECT_GT(seldom_m, every_other_m);                              // new landmarks are known too late
 }
 
-/// A vehicle that was first seen askew: where it travels is learned, and its poses follow.
+/// A vehicle that was first seen askew: the direction of its travel is learned, and its poses follow.
 TEST(JointBackend, AxesComeToLieAlongTheTravel) {
   constexpr double kAskew_rad = 0.15;
   PointDrive drive(5, kStreet);
@@ -242,7 +242,7 @@ TEST(JointBackend, FindsHowTheCamerasShake) {
   EXPECT_EQ(shakeFound_px(0.1, rigid), 0);
 }
 
-/// Far objects most: their points are few.
+/// Far objects are harmed most: their points are few.
 TEST(JointBackend, AShakeThatIsFoundHarmsObjectsLess) {
   PointDrive::Options shaking = kStreet;
   shaking.shake_px = 0.2;
@@ -253,7 +253,7 @@ TEST(JointBackend, AShakeThatIsFoundHarmsObjectsLess) {
   EXPECT_LT(with.step_m, 0.85 * without.step_m);
 }
 
-/// What leaves the window is as good as a batch solution over the whole drive makes it.
+/// Final estimates are as good as a batch solution over the whole drive.
 TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
   PointDrive once(4, kStreet), again(4, kStreet);
   JointParams sliding, batch;

@@ -48,7 +48,7 @@ CameraNees cameraNees(const PointDrive::Options& options) {
   return {sum.motion / count, sum.pose / count};
 }
 
-/// Six where the covariances are right, less where the noise that they allow for (an error that all disparities of a
+/// Six where the covariances are right; less where the noise that they allow for (an error that all disparities of a
 /// landmark share) is not there. Errors since the start of one drive are nearly the same in all of its frames.
 TEST(JointEstimates, CovariancesOfTheCameraAreOfTheSizeOfItsErrors) {
   const CameraNees nees = cameraNees(kStreet);
@@ -68,7 +68,7 @@ TEST(JointEstimates, CovariancesGrowByWhatErrorsHaveInCommon) {
   EXPECT_LT(nees, 7);
 }
 
-/// Of a vehicle in a bend, from the frame on in which its twist is known.
+/// Tests a vehicle in a bend, from the frame on in which its twist is known.
 TEST(JointEstimates, YawRatesAreThoseOfTheBendWithinTheirSigmas) {
   PointDrive::Options options = kStreet;
   constexpr double kYawRate_radps = 0.2;
@@ -160,7 +160,7 @@ TEST(JointEstimates, AccelerationsAreLessSureWhereThePointsAre) {
   EXPECT_GT(sigma_mps2(1.0), 1.3 * sigma_mps2(0.1));
 }
 
-/// What the image tells of the noise holds for a vehicle that enters it.
+/// Noise learned from the image holds for a vehicle that enters it.
 TEST(JointEstimates, ANewObjectHasTheNoiseOfTheImage) {
   constexpr int kEnters = 40, kLook = kEnters + 5;
   const auto sigmaOf = [](double claimed) {

@@ -52,7 +52,7 @@ struct PointsSeenTwice {
   }
 };
 
-/// A landmark that one view has told, and whose second view is a measurement: that is the elimination of two views.
+/// A landmark that one view has told, and whose second view is a measurement, equals the elimination of two views.
 TEST(KnownLandmarks, TellWhatTheEliminationOfTwoViewsDoes) {
   const PointsSeenTwice scene;
   LandmarkViews landmarks;
@@ -90,7 +90,7 @@ TEST(KnownLandmarks, CountLessWhereTheyAreKnownLess) {
   EXPECT_GT(more(2, 2), 2 * H(2, 2));
 }
 
-/// With a shake, a view is a measurement of motion and shake, of which the latter is taken out.
+/// A view measures motion and shake, and the shake is eliminated.
 TEST(KnownLandmarks, TellTheShakeOfTheNewestFrame) {
   constexpr double kShake_px = 0.2, kSigma_px = 0.5;
   PointsSeenTwice scene(200);

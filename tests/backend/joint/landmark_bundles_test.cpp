@@ -54,7 +54,7 @@ class FollowedBody {
     EXPECT_TRUE(solver_.update().problems.empty()) << frame;
     while (static_cast<int>(poses_.size()) > window_frames_) retireOldest();
   }
-  /// Root mean square over the frames that the graph holds.
+  /// Root mean square error over the frames that the graph holds.
   double error_m() const {
     double squares = 0;
     for (const auto& [frame, pose] : poses_)

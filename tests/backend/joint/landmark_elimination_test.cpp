@@ -79,7 +79,7 @@ Eigen::MatrixXd withoutShakes(const Eigen::MatrixXd& system) {
   return system(rows, rows);
 }
 
-/// More than are subtracted at a time.
+/// Tests with more landmarks than are subtracted at a time.
 TEST(LandmarkElimination, IsThatOfOneByOne) {
   const ShakenStreet street(60);
   const Eigen::MatrixXd expected = withoutShakes(eliminatedOneByOne(street, {}));

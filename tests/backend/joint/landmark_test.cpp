@@ -30,7 +30,7 @@ class BodyComingNearer {
   const std::vector<SE3>& poses() const { return T_cam_body_; }
   const LandmarkViews& landmarks() const { return landmarks_; }
 
-  /// One more landmark; returns its views.
+  /// Adds one more landmark; returns its views.
   std::span<const LandmarkView> add(double sigma_px) {
     const Eigen::Vector3d p_body(noise_.uniform(-1, 1), noise_.uniform(-1, 1), noise_.uniform(-2, 2));
     for (int k = 0; k < kViews; ++k) {
@@ -41,7 +41,7 @@ class BodyComingNearer {
     landmarks_.first_view.push_back(static_cast<int>(landmarks_.views.size()));
     return landmarks_.of(landmarks_.count() - 1);
   }
-  /// How far the landmarks put the first pose from where it is, the others being known [m].
+  /// Distance of the first pose from where the landmarks put it, the others being known [m].
   double error_m(const LandmarkNoise& noise) const {
     const auto eliminated = eliminateLandmarks(kRig, noise, landmarks_, FramePose::kCamBody, T_cam_body_, 0);
     const Eigen::MatrixXd system = test::unpacked(eliminated.system);
@@ -99,7 +99,7 @@ struct MeanErrors {
   double own_m = 0, alike_m = 0;
 };
 
-/// Of a pose that landmarks tell, whose standard deviations are those claimed times that factor.
+/// Mean errors of a pose that landmarks tell, whose standard deviations are those claimed times that factor.
 MeanErrors meanErrors(std::span<const double> sigma_factors) {
   constexpr int kTimes = 100;
   MeanErrors errors;

@@ -51,7 +51,8 @@ TEST(ResidualLevels, AreThoseOfTheNoise) {
   EXPECT_EQ(levels.views, 300 * 8);
 }
 
-/// Where a landmark stays in one cell, its fit takes the cell's error away; what shows is where it goes to another.
+/// The fit of a landmark that stays in one cell takes the cell's error away. The error shows where a landmark goes to
+/// another cell.
 TEST(ResidualLevels, SeeWhatResidualsInACellHaveInCommon) {
   const auto correlation = [](double field_sigmas) {
     const ResidualLevels levels = NoisyStreet(field_sigmas).levels();
@@ -61,7 +62,7 @@ TEST(ResidualLevels, SeeWhatResidualsInACellHaveInCommon) {
   EXPECT_GT(correlation(1), 0.05);
 }
 
-/// By counting.
+/// Compares with counting.
 TEST(ResidualLevels, NeighborsAreTheViewsOfOthersInACell) {
   const NoisyStreet street(0);
   const auto cell = [](const LandmarkView& view) {

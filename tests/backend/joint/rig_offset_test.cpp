@@ -12,7 +12,7 @@ namespace {
 constexpr FrameId kFirst{40}, kEarly{44}, kLook{50}, kLate{141};
 constexpr double kSame_px = 1e-3;
 
-/// What landmarks say of the offset in a solver, as one measurement.
+/// Evidence of landmarks on the offset in a solver, as one measurement.
 class RigOffsetTest : public testing::Test {
  protected:
   void landmarksSay(double offset_px, double sigma_px) {

@@ -28,7 +28,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSame = 1e-8;  // of converged systems
 const SE3 kNoPose(Eigen::Matrix3d::Identity(), {kNan, 0, 0});
 
-/// The frames of a drive, each changed by `change`, in a graph. Gives what was said in each frame.
+/// Drives the frames, each changed by `change`, in a graph. Returns the sentences of each frame.
 template <class Change>
 std::vector<std::vector<std::string>> drive(AnchoredPoseGraph& graph, const Change& change) {
   SimulatedDrive drive(8, {});

@@ -3,8 +3,8 @@
 #include "tests/backend/random_graphs.hpp"
 #include "tests/support/replaced_heap.hpp"
 
-/// Counts what the program takes from the heap while `counting`, also through the C functions that Eigen calls. This
-/// test is a program of its own, so that the replacements reach no other.
+/// Counts the program's heap calls while `counting`, also through the C functions that Eigen calls. This test is a
+/// program of its own, so that the replacements reach no other.
 namespace {
 
 // Volatile: compilers take it that allocating changes no variable of the program.
@@ -28,8 +28,8 @@ namespace {
 
 enum class Leaving { kRetire, kDrop };
 
-/// A window of 20 frames: the oldest leave with what they knew, or without. Then the newest have priors, so that what
-/// remains is held.
+/// Lets the oldest frames leave a window of 20, with what they knew or without. Without it the newest get priors, so
+/// that the rest is held.
 void leaveWindow(IncrementalSolver& solver, test::MultibodyGraph& graph, Leaving leaving) {
   if (graph.camera().size() <= 20) return;
   const auto oldest = graph.takeOldest();
@@ -45,7 +45,7 @@ void leaveWindow(IncrementalSolver& solver, test::MultibodyGraph& graph, Leaving
         std::make_unique<PriorFactor>(std::array{v}, PriorModel{solver.pose(v)}, test::isotropicNoise(0.1, 0.01)));
 }
 
-/// Of a camera and three objects.
+/// Allocations with a camera and three objects.
 int allocationsIn(IncrementalSolver& solver, test::MultibodyGraph& graph, int updates, Leaving leaving) {
   allocations = 0;
   for (int i = 0; i < updates; ++i) {
@@ -58,7 +58,7 @@ int allocationsIn(IncrementalSolver& solver, test::MultibodyGraph& graph, int up
   return allocations;
 }
 
-/// After its buffers have grown.
+/// Allocations after the solver's buffers have grown.
 int allocationsOfTwoHundredSteadyUpdates(const IncrementalSolver::Params& params, Leaving leaving) {
   IncrementalSolver solver(params);
   test::MultibodyGraph graph(solver, 1, 3);
@@ -80,15 +80,15 @@ TEST(IncrementalSolverAllocation, TheCounterSeesVectorsAndEigen) {
   EXPECT_EQ(seen, 2) << vector[0] + eigen[0];
 }
 
-/// But for the rare buffer that still grows to a new largest size: measured once in 200 updates.
+/// Takes nothing but the rare buffer that still grows to a new largest size: measured once in 200 updates.
 TEST(IncrementalSolverAllocation, SteadyUpdatesTakeNothingFromTheHeap) {
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates({}, Leaving::kDrop), 4);
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates(kRelinearizesAll, Leaving::kDrop), 4);
 }
 
-/// Ought to be next to nothing too. Measured: 55 in an update, 213 where everything is relinearized, all of them
-/// temporary matrices where the model of a marginal prior is made or compared (MarginalFactor::linearize, and
-/// LinearModels' handling of an InformationFactor).
+/// Measured: 55 in an update, 213 where everything is relinearized. All are temporary matrices where the model of a
+/// marginal prior is made or compared (MarginalFactor::linearize, and LinearModels' handling of an InformationFactor).
+/// They ought to be next to none, too.
 TEST(IncrementalSolverAllocation, MarginalPriorsCostABoundedNumberOfAllocations) {
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates({}, Leaving::kRetire), 200 * 60);
   EXPECT_LE(allocationsOfTwoHundredSteadyUpdates(kRelinearizesAll, Leaving::kRetire), 200 * 230);

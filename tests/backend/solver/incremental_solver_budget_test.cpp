@@ -8,7 +8,7 @@
 #include "tests/backend/dense_system.hpp"
 #include "tests/backend/random_graphs.hpp"
 
-/// How the solver spreads its work over updates: by a budget, or on a schedule.
+/// Tests how the solver spreads its work over updates: by a budget, or on a schedule.
 namespace motorcade {
 namespace {
 
@@ -48,14 +48,14 @@ IncrementalSolver::Params withBudget(std::int64_t scalars) {
 
 constexpr double kBudgetTol = 1e-6;  // m and rad: what turns by 1e-6 rad is not relinearized
 
-/// What is saved at any time is less than a variable costs, which is less than all of them.
+/// Bound of the saved budget: less than a variable costs, which is less than all of them.
 std::int64_t mostSaved(const IncrementalSolver& solver) {
   std::int64_t scalars = 0;
   for (const VariableId v : solver.graph().variables()) scalars += solver.graph().sizeOf(v);
   return scalars;
 }
 
-/// Quiet updates until nothing is put off and nothing moves; the number of variables that are still put off.
+/// Runs quiet updates until nothing is put off and nothing moves; returns the number of variables still put off.
 int finishOverQuietUpdates(IncrementalSolver& solver, std::int64_t budget) {
   std::int64_t eliminated = 0;
   for (int i = 0; i < 400; ++i) {
@@ -191,7 +191,7 @@ struct BentPath {
     params.budget.scalars = scalars;
     return params;
   }
-  /// Where the end is when the path has turned as a whole.
+  /// Place of the end when the path has turned as a whole.
   static SE3 endAt(double angle_rad) {
     const Eigen::Matrix3d R = expSO3({0, 0, angle_rad});
     return {R, (kPoses - 1) * R.col(0)};
@@ -205,7 +205,7 @@ struct BentPath {
   std::vector<VariableId> x;
 };
 
-/// In the end all poses have turned by far more than what their Jacobians are good for.
+/// All poses finally turn by far more than their Jacobians are good for.
 TEST(IncrementalSolverBudget, JacobiansThatArePutOffLetNothingDiverge) {
   BentPath path(1), unlimited(0);
   std::optional<FactorId> measured;

@@ -7,8 +7,8 @@
 #include "tests/backend/random_factors.hpp"
 #include "tests/backend/random_graphs.hpp"
 
-/// Whatever is added, removed, retired and dropped, in whatever order: once settled, the solver stands where a dense
-/// batch solution of its own graph stands.
+/// Edits a solver at random: whatever is added, removed, retired and dropped, in whatever order, once settled the
+/// solver stands where a dense batch solution of its own graph stands.
 namespace motorcade {
 namespace {
 
@@ -18,7 +18,7 @@ using test::MultibodyGraph;
 using test::RandomWorld;
 using test::updateUntilStill;
 
-/// Of meters and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
+/// Tolerance in meters and radians. The systems have condition numbers of up to 1e7, which leaves 1e-9 of rounding.
 constexpr double kBatchTol = 1e-8;
 
 constexpr std::array kLosses{RobustLoss::kNone, RobustLoss::kHuber, RobustLoss::kCauchy, RobustLoss::kTukey};
@@ -89,7 +89,7 @@ class RandomEdits {
     extras_.erase(extras_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 
-  /// One to three variables at once, wherever they lie.
+  /// Retires one to three variables at once, wherever they lie.
   void retire() {
     std::vector<VariableId> leaving;
     for (std::size_t i = 0; i < 1 + world_.below(3) && nodes_.size() > 3; ++i)
@@ -97,7 +97,7 @@ class RandomEdits {
     solver_.retire(leaving);
   }
 
-  /// A variable that none is tied to.
+  /// Drops a variable that none is tied to.
   void drop() {
     std::vector<std::size_t> leaves;
     for (std::size_t i = 0; i < nodes_.size(); ++i)

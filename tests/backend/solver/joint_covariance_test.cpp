@@ -61,7 +61,7 @@ class Trajectory {
   std::vector<VariableId> variables_;
 };
 
-/// Each entry relative to the standard deviations of its row and column.
+/// Compares each entry relative to the standard deviations of its row and column.
 void expectDenseInverse(const IncrementalSolver& solver, std::span<const VariableId> chosen) {
   const DenseSystem dense(solver.graph());
   const Eigen::MatrixXd covariance = test::inverted(dense.linearized().first);
@@ -132,8 +132,8 @@ Eigen::MatrixXd turnOf(const Value& value) {
   return turn;
 }
 
-/// With Jacobians that stay where they were first taken, the covariance is that of the linear models, under right
-/// perturbations of where the pose is now.
+/// The covariance is that of the linear models, under right perturbations of the present pose, although the Jacobians
+/// stay where they were first taken.
 TEST(JointCovariance, IsStatedWhereThePoseIsNotWhereItWasLinearized) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     IncrementalSolver::Params params = kExact;
@@ -229,7 +229,7 @@ Nees neesOf(std::uint64_t seed, RandomWorld::Kind kind) {
   return {error.dot(covariance->llt().solve(error)), static_cast<int>(at)};
 }
 
-/// Over 100 seeds the sum is chi-square with all the degrees of freedom together, nearly normal; its mean lies in the
+/// The sum over 100 seeds is chi-square with all the degrees of freedom together, nearly normal; its mean lies in the
 /// 95 % interval.
 TEST(JointCovariance, NormalizedErrorsOverAHundredSeedsAreChiSquare) {
   for (const auto kind : RandomWorld::kKinds) {

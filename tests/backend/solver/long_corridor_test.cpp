@@ -106,7 +106,7 @@ double chi2(const IncrementalSolver& solver) {
   return sum;
 }
 
-/// Of chi2 over that of the converged solution, after a drive of so many poses.
+/// Ratio of chi2 to that of the converged solution, after a drive of so many poses.
 double excess(const FluidRelinearization::Params& params, std::uint64_t seed) {
   IncrementalSolver solver({.relinearization = params, .budget = {}});
   Corridors corridors(solver, seed);

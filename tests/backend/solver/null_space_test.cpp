@@ -167,7 +167,7 @@ TEST(NullSpace, AlongNegativeInformationTheCostFalls) {
   EXPECT_THAT(direction.steps[0].step, IsNear(SmallVector(SmallVector::Unit(3, 1)), 1e-12));
 }
 
-/// What is left of the diagonal entry when others are eliminated.
+/// Rest of the diagonal entry when others are eliminated.
 double schurDiagonal(const MatrixXd& H, const std::vector<int>& eliminated, int row) {
   if (eliminated.empty()) return H(row, row);
   const VectorXd coupling = H.col(row)(eliminated);

@@ -83,7 +83,7 @@ TEST(Retirement, ADriveOfTwoThousandFramesCostsNoMoreThanItsWindowAndEndsAtTheBa
   EXPECT_LT(differenceFromBatch(solver, 1e-3), 1e-7);  // at coordinates of some hundred meters
 }
 
-/// Where a variable lies in the tree, or in which company it leaves, makes no difference to those that stay.
+/// A variable's place in the tree, and its company when it leaves, make no difference to those that stay.
 TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     IncrementalSolver solver(kExact);
@@ -116,7 +116,7 @@ TEST(Retirement, AnyVariablesMayLeaveWithoutChangingTheOthers) {
   }
 }
 
-/// As an offset of all measurements is left alone by every object that goes.
+/// Every object that goes leaves something on the offset of all measurements.
 TEST(Retirement, WhatManyLeaveOnOneVariableStaysOneFactor) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     IncrementalSolver solver(kExact), same(kExact);
@@ -150,7 +150,7 @@ TEST(Retirement, WhatManyLeaveOnOneVariableStaysOneFactor) {
   }
 }
 
-/// Ids are given out again at once: nothing that was noted about the one that left may fall on the one that comes.
+/// Ids are given out again at once: nothing noted about the variable that left may fall on the one that comes.
 TEST(Retirement, NewOnesMayTakeTheIdsOfThoseThatLeft) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     IncrementalSolver solver({.relinearization = {.mismatch_tolerance = 1e-6,

@@ -47,7 +47,7 @@ TEST(SpreadStep, WhereTheTimeIsOverTheRestFollowsLater) {
   EXPECT_EQ(LongPath({}).solver.update().waiting_scalars, 0) << "without a limit nothing waits";
 }
 
-/// While a step spreads, the estimate is bent where it has come to: no model may be corrected for that.
+/// The estimate is bent at the front of a spreading step: no model may be corrected for that.
 TEST(SpreadStep, ModelsAreComparedWhenAllTheirVariablesHaveFollowedAStep) {
   IncrementalSolver::Params params;
   params.spread_scalars = 30;

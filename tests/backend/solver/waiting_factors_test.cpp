@@ -52,7 +52,8 @@ IncrementalSolver::Params withCircleBudget() {
   return params;
 }
 
-/// Of a pose after both have converged [m]; the one without a budget is tested against dense batch solutions.
+/// Distance of a pose after both have converged [m]; the solver without a budget is tested against dense batch
+/// solutions.
 double distance(IncrementalSolver& solver, IncrementalSolver& unlimited, VariableId v) {
   solver.converge(30, 1e-10);
   unlimited.converge(30, 1e-10);

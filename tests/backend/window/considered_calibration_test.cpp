@@ -69,7 +69,7 @@ TEST(ConsideredCalibration, AnExactOneShiftsNothing) {
   EXPECT_EQ(exact.ofVelocity({2}, {1, 1, 20}, {0, 0, 8}).norm(), 0);
 }
 
-/// Where a body is, from what the rig observes of it, and how fast, from where it is in two frames.
+/// Shifts a body's place, from the rig's observations of it, and its speed, from its places in two frames.
 TEST(ConsideredCalibration, PlacesAndVelocitiesShiftAsTheObservationsTheyAreMadeOf) {
   const ConsideredCalibration calibration = afterSteps(2);
   const Eigen::Vector3d p_now{-3, 1, 18}, velocity_mps{1.5, 0, 13};

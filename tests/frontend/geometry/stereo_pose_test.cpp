@@ -48,7 +48,7 @@ TEST(StereoPose, NoiseFreePointsGiveTheExactPose) {
   EXPECT_THAT(found->T_cam_ref, IsNearPose(trueMotion(), 1e-8));
 }
 
-/// So far away that rounding leaves a matrix that is no covariance.
+/// A point so far away that rounding leaves a matrix that is no covariance.
 TEST(StereoPose, APointBeyondAllMeasureDoesNotSpoilTheOthers) {
   Noise noise(2);
   auto observations = observe(60, 6, 40, noise);

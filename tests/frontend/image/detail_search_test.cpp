@@ -16,7 +16,7 @@ namespace {
 constexpr int kStripWidth_px = 150, kStripHeight_px = 40, kShift_px = 17;
 constexpr double kRatio = 0.9;
 
-/// What the search is to find, from all costs.
+/// Expected result of the search, from all costs.
 std::optional<int> searchAll(const Image& from, int u, int v, const Image& to, int first_u, int last_u) {
   std::vector<std::uint16_t> costs(last_u - first_u + 1);
   windowDifferences({from, u, v, kHalfSizeWindow}, to, first_u, v, costs);

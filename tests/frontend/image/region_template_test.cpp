@@ -25,7 +25,7 @@ std::vector<Eigen::Vector2f> figure() {
   return offsets_px;
 }
 
-/// The texture with what was at the region's middle at `middle_px`, `scale` times as large.
+/// The texture with the region's content moved to `middle_px`, `scale` times as large.
 Image shownAt(const Eigen::Vector2d& middle_px, double scale = 1, const test::Exposure& exposure = {}) {
   const auto gray = [&](double x, double y) {
     return kRegionTexture(kRegionMiddle_px.x() + (x - middle_px.x()) / scale,

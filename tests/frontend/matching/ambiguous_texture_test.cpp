@@ -31,7 +31,7 @@ Image texture(int period) {
 
 const Eigen::Vector2d kFollowed{80, 30}, kOnePeriodOn{112, 30};
 
-/// Followed as if it had not moved in the image.
+/// A patch that was followed as if it had not moved in the image.
 FollowedPatch followed(const Image& image) { return {image, image, kFollowed, kFollowed}; }
 
 TEST(AmbiguousTexture, FindsAFencePostWhereItsNeighborStood) {

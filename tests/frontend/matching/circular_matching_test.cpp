@@ -21,7 +21,7 @@ ExpectedDisparities nothingExpected() {
   return {.of_point = std::vector<std::optional<ExpectedDisparity>>(kPoints), .motion_known = false, .offset_px = 0};
 }
 
-/// As the truth of the frame before and of the camera's motion tells.
+/// Disparities expected by the truth of the frame before and of the camera's motion.
 ExpectedDisparities expectedIn(const TwoSurfaces& scene, int frame) {
   ExpectedDisparities expected = nothingExpected();
   expected.motion_known = true;
@@ -43,7 +43,7 @@ int rightOnes(const TwoSurfaces& scene, int frame, bool on_car,
   return right;
 }
 
-/// Beside a camera at 10 m/s: cars that overtake it at 20 m/s and fall back at 5 m/s.
+/// Cars overtake a camera at 10 m/s at 20 m/s, and fall back at 5 m/s.
 TEST(CircularMatching, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
   const CircularMatching match({}, test::kSmallRig);
   for (const double car_step_m : {2.0, 0.5}) {

@@ -163,7 +163,7 @@ FeaturesPtr uniform(std::uint8_t gray, const Features& like) {
   return FeaturePreparation({})(test::stereoFrame(0, image, image));
 }
 
-/// Of the points, how many have been followed for `age` frames and more.
+/// Number of points that have been followed for `age` frames and more.
 std::ptrdiff_t countOfAge(const OpticalFlow& flow, int age) {
   return std::ranges::count_if(flow.observations, [age](const FlowObservation& point) { return point.age >= age; });
 }

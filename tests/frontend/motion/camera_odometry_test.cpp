@@ -151,7 +151,7 @@ TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
   EXPECT_NEAR(odometry.predict({3600'000'000'000}).T_seen_now.translation().norm(), second_m, 1e-9);
 }
 
-/// Else one that stands would be expected, and traffic that keeps its pace taken for what rests.
+/// Otherwise standing still would count as steady, and traffic that keeps its pace would pass for what rests.
 TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);

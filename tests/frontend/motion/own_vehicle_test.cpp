@@ -16,7 +16,7 @@ const StereoCamera kSmallBaselineRig{320, 320, 320, 200, 0.12, 640, 400};
 const Eigen::Vector3d kSigma_px = Eigen::Vector3d::Constant(0.2);  // noise of each coordinate
 constexpr double kStep_m = 1;                                      // of a camera at 10 m/s, ten frames a second
 
-/// What a camera sees of a street, of a part of its own vehicle and of another vehicle at its own speed.
+/// View of a camera on a street, with a part of its own vehicle and another vehicle at its own speed.
 class Drive {
  public:
   using Observed = std::vector<std::optional<StereoObservation>>;
@@ -39,7 +39,7 @@ class Drive {
     return {next_id_++};
   }
 
-  /// The next frame, `step_m` farther ahead; gives what is left of it.
+  /// Advances to the next frame, `step_m` farther ahead; returns its remaining observations.
   Observed advance(double step_m) {
     flow_.observations.clear();
     seen_.clear();
@@ -153,7 +153,7 @@ TEST(OwnVehicle, NothingIsKnownWhileTheCameraStandsAndAllSoonAfterItStarts) {
   EXPECT_EQ(drive.ownVehicle().view()->share, share);
 }
 
-/// Vehicles that keep our pace exactly, as no real one does.
+/// Vehicles keep our pace exactly, as no real one does.
 TEST(OwnVehicle, VehiclesAheadAndBesideAtTheSameSpeedAreNotTheOwn) {
   Drive drive(kKittiRig);
   drive.addPart({400, 150, 800, 370}, 3.8);  // ahead, as near as a vehicle in front of a bonnet may be

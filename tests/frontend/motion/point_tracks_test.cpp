@@ -19,7 +19,7 @@ using test::kRig;
 const Eigen::Vector3d kPoint(2, 0.5, 20);  // in the first camera
 constexpr PointId kA{4}, kB{9};
 
-/// A camera that drives ahead by 1 m a frame, and what circular matching tells of the points that optical flow follows.
+/// A camera that drives ahead by 1 m a frame, and the results of circular matching for the points of optical flow.
 class DriveAhead {
  public:
   explicit DriveAhead(const PointTracks::Params& params = {}) : tracks(params, kRig) {}
@@ -34,7 +34,7 @@ class DriveAhead {
     trail.add({frame * 100'000'000}, frame ? SE3(Eigen::Matrix3d::Identity(), {0, 0, 1}) : SE3{});
     ++frame;
   }
-  /// From now on the camera sees checks, whose patches are found everywhere.
+  /// Shows checks to the camera from now on, whose patches are found everywhere.
   void showChecks() {
     features_ = imageOf([](double u, double v) { return 128 + 60 * std::sin(u) * std::sin(v); });
   }

@@ -47,8 +47,8 @@ struct DriveInBend {
   }
 };
 
-/// For points whose velocity is constant to the last: no allowance for acceleration, and a loss without its linear
-/// part, which would take about one percent off the chi-square values of clean data.
+/// Model for points of constant velocity: no allowance for acceleration, and a loss without its linear part, which
+/// would take about one percent off the chi-square values of clean data.
 SceneFlowEstimator exactModel() {
   SceneFlowEstimator::Params params;
   params.acceleration_mps2 = 0;

@@ -10,8 +10,8 @@
 
 namespace motorcade::test {
 
-/// A drive over a road with curves and slopes, with the camera's true poses every tenth of a second and what sensors of
-/// the vehicle tell of it: with a wrong scale, a bias, noise and a delay.
+/// A drive over a road with curves and slopes, with the camera's true poses every tenth of a second. The vehicle's
+/// sensors tell of it with a wrong scale, a bias, noise and a delay.
 struct SimulatedVehicle {
   struct Faults {
     double scale = 1.02;                     // told over true speed

@@ -36,7 +36,7 @@ class Inputs {
   std::shared_ptr<VehicleMotionLog> log_ = std::make_shared<VehicleMotionLog>();
 };
 
-/// Sensors that are told wrongly from one frame on, and what becomes of them.
+/// Sensors that are wrong from one frame on, and their verdict.
 class Sensors {
  public:
   template <class Spoil>

@@ -22,7 +22,7 @@ class WallWithPoints {
     return prepare_(stereoFrame(frame, image(T_wall_cam, frame), image(T_wall_cam * T_left_right, 100 + frame)));
   }
 
-  /// On a grid, as seen from where the wall's coordinates begin.
+  /// Points on a grid, as seen from where the wall's coordinates begin.
   std::vector<RestingPoint> points() const {
     std::vector<RestingPoint> points;
     for (int v = 20; v < kSmallRig.height_px - 20; v += 12)

@@ -58,8 +58,8 @@ TEST(GeometricConstraints, APointThatWePassedHasNone) {
   EXPECT_FALSE(geometricResidual(kRig, {*kRig.project(p), kSigma_px, {600, 180, 20}, kSigma_px}, kT_now_then));
 }
 
-/// Followed over frames in which the camera drives 1 m each; in the first camera's frame the point starts at `p` and
-/// moves by `step_m` each.
+/// Follows a point over frames in which the camera drives 1 m each. In the first camera's frame the point starts at `p`
+/// and moves by `step_m` each.
 bool violates(int frames, const Eigen::Vector3d& p, const Eigen::Vector3d& step_m) {
   CameraTrail trail;
   PointTrack track;

@@ -56,7 +56,7 @@ TEST(SceneFlowSegmentation, PointsThatComeBackAfterManyRejectedFramesAreTakenAsN
             test::TwoSurfaces::kWallPoints + test::TwoSurfaces::kCarPoints);
 }
 
-/// Beside a camera at 10 m/s: cars that overtake it at 20 m/s and fall back at 5 m/s.
+/// Cars overtake a camera at 10 m/s at 20 m/s, and fall back at 5 m/s.
 TEST(SceneFlowSegmentation, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
   for (const double car_step_m : {2.0, 0.5}) {
     const test::TwoSurfaces scene(car_step_m);

@@ -20,7 +20,7 @@ std::uint8_t pixelAt(const Image& image, int u, int v) {
   return image.at(std::clamp(u, 0, kCensusWidth_px - 1), std::clamp(v, 0, kCensusHeight_px - 1));
 }
 
-/// In the corner of the image, in its middle and all of it.
+/// Windows in the corner of the image, in its middle and over all of it.
 class CensusOfWindow : public testing::TestWithParam<PixelWindow> {};
 
 TEST_P(CensusOfWindow, SaysWhichPixelsAroundAreDarker) {

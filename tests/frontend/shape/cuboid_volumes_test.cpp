@@ -26,7 +26,8 @@ class VolumesOfCar : public testing::Test {
     CuboidVolumes(seen_, view_, kRig).tell(CuboidVolumes::kDisparitySigma_px, cells);
     return cells;
   }
-  /// Of the cells that show the car well above the road, and of those that show something else: the share so told.
+  /// Share of cells that are told so, of those that show the car well above the road, or of those that show something
+  /// else.
   double share(const std::vector<std::uint8_t>& cells, bool of_car, std::uint8_t told) const {
     int all = 0, such = 0;
     for (int cell = 0; cell < kVolumeWindow.area(); ++cell) {

@@ -38,7 +38,7 @@ class PlainMatching {
     for (const auto& [du, dv] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)})
       addPaths(du, dv);
   }
-  /// Of the left image; -1 where the search from the right image disagrees.
+  /// Disparity of the left image; -1 where the search from the right image disagrees.
   int disparity(int u, int v) const {
     const int best = bestOf(count_, [&](int d) { return sum(u, v, d); });
     const int in_right = window_.u0 + u - best;

@@ -13,7 +13,7 @@ void addVerdicts(Existence& existence, int first, int frames, MotionVerdict verd
   for (int frame = first; frame < first + frames; ++frame) existence.addVerdict(FrameId{frame}, verdict);
 }
 
-/// The log odds that the evidence sums up to, before they are calibrated.
+/// Log odds to which the evidence adds up, before they are calibrated.
 double summed(double probability) {
   const double log_odds = std::log(probability / (1 - probability));
   return log_odds > 0 ? log_odds / 1.4 : log_odds;
@@ -25,7 +25,7 @@ TEST(Existence, IsUndecidedBeforeAnythingIsSeen) {
   EXPECT_NEAR(existence.probability(), 0.5, 0.01);
 }
 
-/// The likelihood of a speed among those of traffic, Gaussian with 10 m/s, over that as an error alone.
+/// Expects the likelihood of a speed among those of traffic, Gaussian with 10 m/s, over that as an error alone.
 TEST(Existence, OfASpeedIsItsLikelihoodInTrafficAgainstRest) {
   Existence existence;
   existence.addSpeed(6, 3);
@@ -48,7 +48,7 @@ TEST(Existence, OfASureSpeedAloneIsNotSure) {
   EXPECT_LT(existence.probability(), 0.95);
 }
 
-/// One in six tracks is real although all speaks against it.
+/// One in six tracks is real although all evidence speaks against it.
 TEST(Existence, IsNeverSureThatThereIsNothing) {
   Existence existence;
   existence.addSettledSpeed(0.1, 0.1);
@@ -100,7 +100,7 @@ TEST(Existence, StaysWithWhatStoppedAfterItsMotionSettled) {
   EXPECT_GT(existence.settledProbability(kFirst), 0.8);
 }
 
-/// By hindsight the first estimate was wrong.
+/// Hindsight shows that the first estimate was wrong.
 TEST(Existence, IsSettledByWhatIsSettledAlone) {
   Existence existence;
   existence.addSpeed(6, 0.5);

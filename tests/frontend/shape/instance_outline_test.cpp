@@ -22,7 +22,7 @@ PixelWindow displaced(PixelWindow cells, int right, int down) {
   return cells;
 }
 
-/// An outline found in a window, both in cells of a level, and what labels make of it.
+/// An outline found in a window, both in cells of a level, and the outline by labels.
 struct Labelling {
   explicit Labelling(const PixelWindow& window = kInside, const PixelWindow& own = kOwn) : outline{window, {}} {
     seen.level = kCoarse;

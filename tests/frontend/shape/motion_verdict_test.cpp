@@ -36,16 +36,16 @@ class Surface {
     now_ = pictureOf([](double, double) { return 0.0; });
   }
 
-  /// Where the content of the image was before is told by how far it has come since, by place.
+  /// Verdict on an image whose content has come so far since the one before, by place.
   MotionVerdict verdict(const std::function<double(double, double)>& came_px) {
     before_ = pictureOf(came_px);
     const SE3 T_before_body(Eigen::Matrix3d::Identity(), {-kAside_m, 0, kDepth_m});
     view_.well_before = {&now_, &before_, T_before_body, SE3{}, FrameId{1}, apart};
     return motionVerdict(points_seen ? &observed_ : nullptr, outline_found ? &seen_ : nullptr, view_, kRig);
   }
-  /// An object that was known before, around the surface or so far before it, which goes along with the body.
+  /// Adds an object that was known before, around the surface or so far before it, which goes along with the body.
   void addOther(double nearer_m = 0) { view_.others.push_back(along(nearer_m, -kAside_m)); }
-  /// One that was lost, which goes another way or along with the body.
+  /// Adds a lost object, which goes another way or along with the body.
   void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
   void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
   /// Follows none of the points of what may be a person any more, but finds them as patches.
@@ -53,12 +53,12 @@ class Surface {
     view_.small = true;
     std::swap(observed_.measured, observed_.patches);
   }
-  /// Neither points nor patches of what may be a person are followed any more.
+  /// Follows neither points nor patches of what may be a person any more.
   void followNothing(bool small) {
     view_.small = small;
     observed_.measured.clear(), observed_.patches.clear();
   }
-  /// The body has the width of a person [cells].
+  /// Gives the body the width of a person [cells].
   void widenTo(double width) { view_.small = true, view_.width = width; }
   /// Forgets all points but so many of the lowest.
   void keep(int points) { observed_.measured.erase(observed_.measured.begin(), observed_.measured.end() - points); }
@@ -124,7 +124,7 @@ TEST(MotionVerdict, IsUntoldOfAPersonOfWhomNothingIsFollowed) {
   EXPECT_EQ(car.verdict(moved), MotionVerdict::kNothing);
 }
 
-/// Who is evenly dressed looks the same after half a step.
+/// An evenly dressed person looks the same after half a step.
 TEST(MotionVerdict, IsUntoldOfAPersonWhoRestedUntilItWentByItsWidth) {
   Surface person;
   person.widenTo(kShift_px + 1);

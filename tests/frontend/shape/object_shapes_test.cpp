@@ -44,7 +44,7 @@ double noiseAt(const Eigen::Vector3d& p_m, double grid_m) {
   return 50 + sum;
 }
 
-/// What a camera at rest sees of a car on the street, or of an empty street; in the dark, nothing.
+/// View of a camera at rest on a street with a car, or an empty one; nothing in the dark.
 class Scene {
  public:
   explicit Scene(const std::optional<SE3>& T_cam_car, bool dark = false) : T_cam_car_(T_cam_car), dark_(dark) {}
@@ -59,7 +59,7 @@ class Scene {
     features->right = buildPyramid(seenFrom(kRig.baseline_m), 3, pool);
     return features;
   }
-  /// Share of mask and car that is of both.
+  /// Share of the union of mask and car that both cover.
   double iou(const ObjectMask& mask) const {
     const StreetByHand street = streetFrom(0);
     int both = 0, either = 0;
@@ -106,7 +106,7 @@ class Crossing {
     return StreetByHand::standingAt(first_x_m_ + speed_mps_ * kFrame_s * frame, kDepth_m,
                                     speed_mps_ > 0 ? -M_PI / 2 : M_PI / 2);
   }
-  /// The estimate of the next frame, in which the car is, or nothing is, where `scene` says.
+  /// Estimate of the next frame, with the car, or nothing, where `scene` says.
   FrameEstimate look(ObjectState state, const Scene& scene) {
     const FrameId frame{next_++};
     const SE3 T_cam_body = T_cam_car(static_cast<int>(frame.value)) * shifted(kOrigin_m);
@@ -175,7 +175,7 @@ class Crossing {
   std::vector<FrameEstimate> finals_;
 };
 
-/// Of the cuboid from the car.
+/// Expects the cuboid to be that of the car.
 void expectTheCar(const ObjectEstimate& object, double tolerance_m, const Eigen::Vector3d& origin_m = kOrigin_m) {
   ASSERT_TRUE(object.cuboid);
   EXPECT_NEAR(object.cuboid->size_m.x(), kCar_m.x(), tolerance_m);
@@ -275,7 +275,7 @@ TEST(ObjectShapes, WhatHasLeftTheImageWhollyIsDroppedEvenIfItSeemsToBeSeen) {
   EXPECT_TRUE(crossing.finish()[13].objects.empty());
 }
 
-/// An estimate of a car that crosses, where the street is empty: what is seen densely contradicts it.
+/// A car that crosses is estimated where the street is empty: what is seen densely contradicts it.
 TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
   Crossing crossing(-6), imagined(-6);
   double there = 0, not_there = 1;

@@ -112,8 +112,8 @@ TEST(Outline, LeavesOthersAlone) {
   EXPECT_LT(taken(), 0.1 * without);
 }
 
-/// A second car beside the first, in the volume that is thought possible: the one moved aside since the frame before,
-/// the other rests.
+/// A second car beside the first, in the volume that is thought possible: one moved aside since the frame before, the
+/// other rests.
 TEST(Outline, LeavesOutWhatRests) {
   constexpr int kLevel = 1;
   const SE3 T_now = StreetByHand::standingAt(-0.6, 12), T_before = StreetByHand::standingAt(-1.0, 12),

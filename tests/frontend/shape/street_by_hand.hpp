@@ -11,7 +11,7 @@
 
 namespace motorcade::test {
 
-/// A cuboid on a flat road before a far wall, seen without error: what each pixel shows, and how far it is.
+/// A cuboid on a flat road before a far wall, seen without error: each pixel shows one of them, at a known distance.
 class StreetByHand {
  public:
   static constexpr double kRoad_m = 1.65, kWall_m = 60;

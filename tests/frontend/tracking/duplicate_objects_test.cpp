@@ -32,7 +32,7 @@ TrackedObject objectOn(const Seen& seen) {
   return object;
 }
 
-/// Whether the younger of two objects, one behind the other, is taken for a part of the older.
+/// True when the younger of two objects, one behind the other, is taken for a part of the older.
 bool areOne(const Seen& older, const Seen& younger) {
   std::vector<TrackedObject> objects{objectOn(older), objectOn(younger)};
   mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);

@@ -30,7 +30,7 @@ InstanceLabels randomLabels(std::uint64_t seed) {
   return labels;
 }
 
-/// Goes through all pixels for each label.
+/// Box of a label, by going through all pixels.
 Box boxByPixels(const InstanceLabels& labels, std::uint16_t label) {
   Box box{kLabelsWidth_px, kLabelsHeight_px, -1, -1};
   for (int v = 0; v < kLabelsHeight_px; ++v)

@@ -16,7 +16,7 @@
 
 namespace motorcade::test {
 
-/// Few pixels, so that its images are quickly rendered.
+/// A rig of few pixels, so that its images are quickly rendered.
 inline constexpr StereoCamera kNarrowRig{
     .fx_px = 400, .fy_px = 400, .cx_px = 120, .cy_px = 80, .baseline_m = 0.5, .width_px = 240, .height_px = 160};
 
@@ -27,7 +27,7 @@ class GrainTexture {
     Noise noise(seed);
     for (double& value : values_) value = noise.uniform(-1, 1);
   }
-  /// Around 128.
+  /// Gray level, around 128.
   double operator()(double x_px, double y_px) const {
     constexpr double kFine_px = 4, kCoarse_px = 12, kContrast_gray = 50;
     return 128 + kContrast_gray * (at(x_px / kFine_px, y_px / kFine_px) + at(x_px / kCoarse_px, y_px / kCoarse_px));
@@ -46,8 +46,8 @@ class GrainTexture {
   std::array<double, kSide * kSide> values_;
 };
 
-/// An upright board which walks to the right before a wall, both textured: what a stereo camera sees of them that
-/// drives ahead and turns to the right. The world's z axis is where it looked in the first frame.
+/// An upright board that walks to the right before a wall, both textured, as a stereo camera sees them that drives
+/// ahead and turns to the right. The world's z axis is where it looked in the first frame.
 class LabelledStreet {
  public:
   static constexpr double kBoard_m = 10, kWall_m = 22;  // from the origin of the world, along its z axis
@@ -71,12 +71,12 @@ class LabelledStreet {
   Eigen::Vector3d velocity_cam_mps() const {
     return T_world_cam().rotation().transpose() * Eigen::Vector3d(board_.walk_mps, 0, 0);
   }
-  /// Of a place on the board, from its middle, in the newest frame.
+  /// Projection of a place on the board, from its middle, in the newest frame.
   Eigen::Vector3d onBoard_px(double right_m, double down_m) const {
     return seenNow_px(middle_m(kNow) + Eigen::Vector3d(right_m, down_m, 0));
   }
   static Eigen::Vector3d onWall_px(double x_m, double y_m) { return seenNow_px({x_m, y_m, kWall_m}); }
-  /// Around so much of a surface to each side of a place, in the newest frame.
+  /// Box around so much of a surface to each side of a place, in the newest frame.
   static Box around(const Eigen::Vector3d& uvd_px, double half_width_m, double half_height_m) {
     const double px_per_m = uvd_px.z() / kNarrowRig.baseline_m;
     return {std::round(uvd_px.x() - half_width_m * px_per_m), std::round(uvd_px.y() - half_height_m * px_per_m),
@@ -152,7 +152,7 @@ class LabelledStreet {
     const unsigned seed = 100 * board_.seed + 2 * frame + (aside_m > 0 ? 1 : 0);
     return render(kNarrowRig.width_px, kNarrowRig.height_px, gray, {.noise = kNoise_gray, .seed = seed});
   }
-  /// How much of a pixel a surface covers that ends so far from the pixel's middle.
+  /// Share of a pixel that a surface covers if it ends so far from the pixel's middle.
   static double coverage(double inside_px) { return std::clamp(inside_px + 0.5, 0.0, 1.0); }
 
   Board board_;

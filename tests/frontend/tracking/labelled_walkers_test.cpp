@@ -124,7 +124,7 @@ TEST(LabelledWalkers, AreNoLargerThanPeople) {
   EXPECT_FALSE(walkerIn(part, cornersOn(street), street)) << "the body goes on beside the label";
 }
 
-/// As labels that are late show where a person was.
+/// Late labels show where a person was.
 TEST(LabelledWalkers, BelieveNoLabelBesideItsBody) {
   const LabelledStreet street(kWalks);
   for (const double aside_m : {-0.3, 0.3}) {
@@ -140,7 +140,7 @@ TEST(LabelledWalkers, GoAcrossNeitherSlowerNorFasterThanPeopleWalk) {
   }
 }
 
-/// Labels without end, each of a person's size, take no more time than some of them.
+/// Endless labels, each of a person's size, take no more time than some of them.
 TEST(LabelledWalkers, LookAtSomeOfTooManyLabelsAndAtOthersInTheNextFrame) {
   const LabelledStreet street(kWalks);
   constexpr int kColumns = 20, kRows = 4, kSide_px = 8;

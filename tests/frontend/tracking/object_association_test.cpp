@@ -16,7 +16,7 @@ struct Road {
   SceneMotion scene;
   int next_point = 0;
 
-  /// With points of its own: `points` ids from `first`.
+  /// Adds an object with points of its own: `points` ids from `first`.
   void addObject(double x_m, int first, int points) {
     Eigen::Matrix3d upright;  // columns: ahead = camera's z, left = -x, up = -y
     upright << 0, -1, 0, 0, 0, -1, 1, 0, 0;
@@ -29,7 +29,7 @@ struct Road {
       object.points.push_back({{first + i}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()});
     objects.push_back(object);
   }
-  /// Of the next `points` ids of the scene.
+  /// Adds a component of the next `points` ids of the scene.
   void addSegment(double x_m, int points, double speed_mps = 10, PointLabel label = PointLabel::kMoving) {
     MotionComponent component{
         .points = {}, .label = label, .centroid_cam = {x_m, 1, kDepth_m}, .velocity_mps = {0, 0, speed_mps}};

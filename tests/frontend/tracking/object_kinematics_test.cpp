@@ -34,7 +34,7 @@ struct CarInBend {
   ObjectKinematics kinematics() const { return {T_world_body, twist, covariance}; }
 };
 
-/// Without noise on acceleration.
+/// Parameters without noise on acceleration.
 ObjectKinematics::Params frictionless() {
   ObjectKinematics::Params p;
   p.acceleration = {0, 0, 0, 0, 0};

@@ -23,7 +23,7 @@ struct Stride {
   SceneMotion before, now;
   MotionComponent component;  // of the one point
 
-  /// `moved_m` to the right; the point seems to move at `speed_mps`, whatever the board does.
+  /// The board moves by `moved_m` to the right; the point seems to move at `speed_mps`, whatever the board does.
   Stride(const TexturedBoard::Paint& paint, double moved_m, double speed_mps) {
     show({{kNow, paint}}, {{toTheRight(-moved_m) * kNow, paint}});
     before.head.frame = {4}, now.head.frame = {5};

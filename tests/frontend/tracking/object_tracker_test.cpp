@@ -17,7 +17,7 @@ using test::kRig;
 using test::SimulatedCar;
 using test::SimulatedTraffic;
 
-/// What the tracker said over a drive.
+/// Results of the tracker over a drive.
 struct TrackedDrive {
   SimulatedTraffic traffic;
   ObjectTracker tracker;
@@ -178,7 +178,7 @@ TEST(ObjectTracker, AFewPointsSeenThroughAVehicleAreNoVehicle) {
   }
 }
 
-/// The same beside its points, where the right image's border hides it.
+/// The same beside the points, where the right image's border hides the vehicle.
 TEST(ObjectTracker, AFewPointsBesideAVehicleThatIsCutOffAreNoVehicle) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const SimulatedCar truck{.x_m = -4.2, .z_m = 9, .speed_mps = 10, .points = 200};

@@ -15,8 +15,8 @@ namespace {
 using test::kRig;
 using test::TexturedBoard;
 
-/// Two people who walk to the right before a camera at rest, in images; the second one 5 m farther off. Patches follow
-/// whom a component of one point spawned.
+/// Two people who walk to the right before a camera at rest, in images; the second one is 5 m farther off. A component
+/// of one point spawns a person, whom patches then follow.
 class Sidewalk {
  public:
   struct Seen {
@@ -127,7 +127,7 @@ TEST(ObjectTracker, AnotherPointOnAPersonIsNoOtherPerson) {
   EXPECT_EQ(sidewalk.reported().rbegin()->first, TrackId{1}) << "no track was spent in between";
 }
 
-/// A walk's direction is that of the patches soon, whatever the first point told.
+/// A walk's direction is soon that of the patches, whatever the first point told.
 TEST(ObjectTracker, APersonGoesToASideOfTheDirectionFirstTold) {
   Sidewalk sidewalk;
   sidewalk.walkOn(1);

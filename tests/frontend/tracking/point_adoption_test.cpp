@@ -45,7 +45,7 @@ struct CarWithPoints {
     taken.push_back(false);
     return scene.points.back();
   }
-  /// Whether the object takes the newest point, from the whole scene or from a component of all its points.
+  /// True when the object takes the newest point, from the whole scene or from a component of all its points.
   bool takes(bool from_segment = false) {
     MotionComponent component;
     for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) component.points.push_back(i);
@@ -55,7 +55,7 @@ struct CarWithPoints {
   }
 };
 
-/// Whether a car takes a point at `p_body` after `change` was made to it.
+/// True when a car takes a point at `p_body` after `change` was made to it.
 template <class Change>
 bool takesAfter(const Change& change, const Eigen::Vector3d& p_body = {0.5, 0.2, 0.3}) {
   CarWithPoints car;
@@ -155,7 +155,7 @@ TEST(PointAdoption, APersonTakesWhatIsOnOnePerson) {
   }
 }
 
-/// Whether a person of whom one frame was seen, too few to know how large it is, takes a point two meters aside.
+/// True when a person takes a point two meters aside. One frame of the person was seen, too few to know the size.
 bool takesBeside(bool wall_between) {
   PersonWithPoints person;
   person.object.life = LifeCycle{};

@@ -16,7 +16,7 @@ using test::LabelledStreet;
 
 constexpr double kCertain_chi2 = 100, kUncertain_chi2 = 16;
 
-/// What is found of a box in the newest frame, whose middle is on a surface with this disparity.
+/// Flow of a box in the newest frame, whose middle is on a surface with this disparity.
 std::optional<SceneFlow> flowIn(const Box& labelled, double disparity_px, const LabelledStreet& street) {
   const RegionFlow flow(street.past, kNarrowRig);
   const auto seen =

@@ -67,7 +67,7 @@ TEST(SmallBody, OfWhoRidesMovesLikeAVehicle) {
   }
 }
 
-/// Who is known by one point, so far below the camera.
+/// A body that is known by one point, so far below the camera.
 TrackedObject knownBy(double right_m, double below_m) {
   TrackedObject object;
   object.points.push_back({{0}, {right_m, below_m, 0.1}, Eigen::Matrix3d::Identity()});

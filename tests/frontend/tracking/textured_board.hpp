@@ -14,7 +14,7 @@
 namespace motorcade::test {
 
 /// A textured board of 3 x 1.6 m, upright and square to the camera, which drives before a far wall with another
-/// texture: what the rig sees of it, in images.
+/// texture, in the images of the rig.
 class TexturedBoard {
  public:
   static constexpr double kWall_m = 80, kHalfWidth_m = 1.5, kHalfHeight_m = 0.8;

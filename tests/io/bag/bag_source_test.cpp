@@ -156,7 +156,7 @@ TEST_F(BagSourceTest, StopsWithoutTakingAllPairs) {
   EXPECT_FALSE(end.damaged);
 }
 
-/// The messages behind the last pair of a long recording may be many.
+/// Many messages may lie behind the last pair of a long recording.
 TEST_F(BagSourceTest, StopsWhileNoPairComes) {
   test::McapText rest;
   for (int i = 0; i < 1000; ++i) rest.message(1, 0, "no image");

@@ -21,7 +21,7 @@ using test::pngChunksOf;
 using test::pngOf;
 using test::PngSample;
 
-/// What comes of a file: pixels, or the message of the error.
+/// Outcome of decoding a file: pixels, or the message of the error.
 struct Verdict {
   std::string message, pixels;
   bool operator==(const Verdict&) const = default;
@@ -43,7 +43,7 @@ enum class Way { kFast, kLibpng };
 
 class PngFastDecoder : public testing::Test {
  protected:
-  /// Whether the fast way gives an image, and what comes out is libpng's verdict either way.
+  /// Expects libpng's verdict, and that the image comes, or does not come, by the fast way.
   void expectAsLibpng(std::string_view bytes, Way way) {
     const ImageSize size = pngCodec().header(bytes, "a.png").size;
     EXPECT_EQ(decodeCommonPng(bytes, size, pool_).has_value(), way == Way::kFast);

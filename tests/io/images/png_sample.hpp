@@ -24,7 +24,7 @@ struct PngSample {
 
 /// A chunk of a PNG, with its length and its checksum.
 std::string pngChunk(const std::string& name_and_data);
-/// Those of a file, each whole.
+/// Chunks of a file, each whole.
 std::vector<std::string> pngChunksOf(std::string_view file);
 /// A file of such chunks.
 std::string pngOf(const std::vector<std::string>& chunks);

@@ -6,7 +6,7 @@
 
 namespace motorcade::test {
 
-/// Of the i-th frame at ten frames a second, in which each stage takes 3 ms.
+/// Timing of the i-th frame at ten frames a second, in which each stage takes 3 ms.
 inline FrameTiming timingOf(int i) {
   FrameTiming timing;
   timing.head.frame = {i};

@@ -66,7 +66,7 @@ TEST(Remap, PixelsAreTheBilinearMeanOfFourToTheNearestLevel) {
     }
 }
 
-/// A digest of all bytes: on every processor the same.
+/// Digest of all bytes: it is the same on every processor.
 TEST(Remap, BitsAreTheSameInEveryBuild) {
   ImagePool pool;
   std::uint64_t digest = 1469598103934665603U;

@@ -50,7 +50,7 @@ class RigForms : public testing::Test {
     EXPECT_NEAR((logSO3(rig.T_right_left.rotation()) - Eigen::Vector3d(0.01, 0, 0)).norm(), 0, 1e-9);
     EXPECT_NEAR(rectificationOf(rig, {752, 480}).camera.baseline_m, 0.11, 1e-9);
   }
-  /// About EuRoC's lenses.
+  /// Expects lenses that are about EuRoC's.
   static void expectLenses(const Rig& rig) {
     EXPECT_EQ(rig.left.fx_px, 458.6);
     EXPECT_EQ(rig.left.cy_px, 248.4);

@@ -11,7 +11,7 @@ namespace motorcade::test {
 
 inline constexpr ImageSize kSize{376, 240};
 
-/// About the left camera of EuRoC's rig at half its resolution.
+/// A camera about as the left one of EuRoC's rig at half its resolution.
 inline LensCamera radialCamera() {
   return {.fx_px = 229.3,
           .fy_px = 228.6,

@@ -120,7 +120,7 @@ TEST(Y4mSource, EndsWhenItIsStoppedWhileThePipeIsSilent) {
   EXPECT_EQ(piped.source->finish().remark, "") << "that the picture is not whole is nobody's fault";
 }
 
-/// Bytes that go into the pipe until it takes no more for a while; at most `most`.
+/// Number of bytes that go into the pipe until it takes no more for a while; at most `most`.
 std::size_t writtenAtMost(const PipedSource& piped, const std::string& text, std::size_t most) {
   ::fcntl(piped.pipe.writer(), F_SETFL, O_NONBLOCK);
   constexpr int kPatience = 20;
