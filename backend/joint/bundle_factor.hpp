@@ -10,7 +10,7 @@ namespace motorcade {
 /// Eliminated landmarks as a factor on the poses from which their body was seen. It knows nothing but motions relative
 /// to the last frame, D_k = T_cam(k)_body T_cam(last)_body^-1, and so stays what it is where everything moves as one:
 ///   e_k = log(D_k D_k(linearized)^-1),  cost = [S e; offset; 1]' system [S e; offset; 1]
-/// where S makes steps of the poses of them.
+/// S maps a displacement to a step of the pose variables.
 class BundleFactor final : public InformationFactor {
  public:
   BundleFactor(std::vector<VariableId> poses, VariableId offset, EliminatedLandmarks landmarks);
