@@ -25,7 +25,7 @@ for ((gap = 0; gap < count; ++gap)); do
   worst=$(jq -n "[$worst, $nees] | max")
   if jq -ne "$nees < 16" >/dev/null; then covered=$((covered + 1)); else silent=$((silent + 1)); fi
 done
-echo "$count gaps of 1 to 20 frames: normalized error squared (NEES) of the motion across the gap, 6 degrees of freedom."
+echo "$count gaps of 1 to 20 frames. NEES is the normalized error squared of the motion across a gap, with 6 degrees of freedom. A gap is *silent* if its error is neither covered nor reported."
 echo
 echo "| covered (NEES < 16) | reported as lost | silent | greatest NEES |"
 echo "| --- | --- | --- | --- |"

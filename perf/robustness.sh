@@ -80,8 +80,11 @@ done
 {
   echo "# Robustness"
   echo
-  echo "Made by \`perf/robustness.sh --gaps $gaps\`: what each fault does to the camera's final path (absolute trajectory error, and how many times that of the drive"
-  echo "without faults) and to the recall of moving objects to 30 m. *Missing*: lost, rejected and dropped frames."
+  echo "This page shows what each fault does to the results. \`perf/robustness.sh --gaps $gaps --seeds $seeds\` writes this page."
+  echo
+  echo "* *ATE* is the absolute trajectory error of the camera's final path. *times clean* compares it with the same drive without faults."
+  echo "* *recall* is that of moving objects to 30 m."
+  echo "* *missing* frames are lost, rejected or dropped. A new *segment* begins where no measurement links the frames before and after."
   echo
   echo "## Frames that are missing or of no use"
   echo
@@ -114,7 +117,7 @@ done
   echo
   echo "## Rigs and inputs that are wrong"
   echo
-  echo "What \`motorcade check\` finds in twenty pairs, from four places of each drive."
+  echo "\`motorcade check\` looks at twenty pairs, from four places of each drive. *named* counts the places at which it finds the fault."
   echo
   echo "| fault | \`--inject\` | finding | named |"
   echo "| --- | --- | --- | --- |"
@@ -135,11 +138,13 @@ done
   echo
   echo "## Scenes that mislead"
   echo
-  echo "Rendered scenes with exact truth (\`perf/scenes.sh --seeds $seeds\`): patterns that repeat, leaves that sway, rows of parked cars, little at rest in view."
+  echo "These rendered scenes have exact truth (\`perf/scenes.sh --seeds $seeds\`). They show patterns that repeat, leaves that sway, rows of parked cars, and little at rest in view."
   echo
-  MOTORCADE=$motorcade perf/scenes.sh --seeds "$seeds" --out "$out/scenes" || echo "One of them is farther from the true path than it may be."
+  MOTORCADE=$motorcade perf/scenes.sh --seeds "$seeds" --out "$out/scenes" || echo "In one of them the camera is farther from the true path than allowed."
   echo
   echo "## All other faults"
+  echo
+  echo "Tests hold these, in a build by \`tests/run.sh\`."
   echo
   echo "| fault | tests | result |"
   echo "| --- | --- | --- |"
