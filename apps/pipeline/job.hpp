@@ -48,7 +48,7 @@ struct Job {
   }
 };
 
-/// The tokens: a frame needs a job to enter the flow graph, so that no more frames are in flight than there are jobs.
+/// Jobs that are free: a frame needs one to enter the flow graph, so that no more are in flight than there are jobs.
 /// One thread takes jobs, one gives them back.
 class FreeJobs {
  public:
