@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait for anybody, but that the
-/// second may where a replay is to wait for what is written.
+/// Follows a run while it goes on, to show it or to send more of it to a file of its own. Neither call may wait for
+/// anybody, but that the second may where a replay is to wait for what is written.
 class RunListener {
  public:
   virtual ~RunListener() = default;
