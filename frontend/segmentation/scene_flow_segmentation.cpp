@@ -49,6 +49,17 @@ OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& 
   return all;
 }
 
+/// The points that flow lost. Both are ordered by point.
+std::vector<RestingPoint> without(const OpticalFlow& flow, const std::vector<RestingPoint>& points) {
+  std::vector<RestingPoint> lost;
+  auto followed = flow.observations.begin();
+  for (const RestingPoint& point : points) {
+    followed = std::ranges::lower_bound(followed, flow.observations.end(), point.point, {}, &FlowObservation::point);
+    if (followed == flow.observations.end() || followed->point != point.point) lost.push_back(point);
+  }
+  return lost;
+}
+
 }  // namespace
 
 SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
@@ -141,19 +152,22 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const Stereo
   if (odometry_.trail().empty() || !tracks_.featuresOfLast()) return measured;
   const Features& now = *stereo.features;
   const std::vector<RestingPoint> points = tracks_.seenLast();
-  const GapBridge::Gap gap{.points = points,
-                           .then = *tracks_.featuresOfLast(),
-                           .now = now,
-                           .disparity_offset_px = disparity_offset_.offset_px(),
-                           .duration_s = predicted.dt_s,
-                           .ahead_frames = predicted.ahead_frames};
+  GapBridge::Gap gap{.points = points,
+                     .then = *tracks_.featuresOfLast(),
+                     .now = now,
+                     .disparity_offset_px = disparity_offset_.offset_px(),
+                     .duration_s = predicted.dt_s,
+                     .ahead_frames = predicted.ahead_frames};
   std::optional<SE3> T_then_now;
   if (isSure(measured.camera)) T_then_now = measured.camera.T_seen_now;
   if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s) T_then_now = gap_bridge_.locate(gap, predicted.T_seen_now);
   if (T_then_now && !odometry_.believes(*T_then_now, predicted)) T_then_now.reset();
-  if (T_then_now)
+  if (T_then_now) {
+    const std::vector<RestingPoint> lost = without(measured.flow, points);
+    gap.points = lost;
     measured = measure(stereo, merged(measured.flow, gap_bridge_.find(gap, *T_then_now)),
                        {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
+  }
   CameraMotion& camera = measured.camera;
   if (T_then_now && camera.status == FrameStatus::kGood && agree(camera.T_seen_now, *T_then_now)) {
     camera.cause = FrameCause::kAfterGap;
