@@ -12,6 +12,9 @@ namespace motorcade {
 namespace {
 
 constexpr double kGapIntervals = 1.5;  // since the last frame that was seen: frames are missing
+// Between frames of a sparse drive: optical flow lets points wait for a better image up to the first, and none wait
+// beyond the second.
+constexpr double kSparse_s = 0.15, kMaxWaiting_s = 0.5;
 // Flow over a gap is trusted when so many points agree on a motion, and such a share of those that were followed.
 constexpr int kSureInliers = 60;
 constexpr double kSureShare = 0.6;
@@ -81,6 +84,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
   const MeasuredFrame measured = measure(*stereo, *flow);
+  if (mayBeABadImage(measured.camera, frame.head.stamp)) return passOver(frame);
   const Odometry odometry = odometry_.add(frame.head.stamp, measured.camera);
   const Observations of_world = learnOwnVehicle(measured);
   tracks_.update(measured.flow, of_world, odometry_.trail());
@@ -143,6 +147,13 @@ bool SceneFlowSegmentation::isAfterGap(Timestamp stamp) const {
   if (trail.empty()) return false;
   const auto* before = trail.find(trail.newest().step - 1);
   return before && secondsBetween(trail.newest().stamp, stamp) > -kGapIntervals * before->dt_s;
+}
+
+/// One frame of a sparse drive that is not linked to the last one: the next one may be.
+bool SceneFlowSegmentation::mayBeABadImage(const CameraMotion& camera, Timestamp stamp) const {
+  if (camera.status == FrameStatus::kGood || odometry_.trail().empty() || isAfterGap(stamp)) return false;
+  const double since_s = secondsBetween(odometry_.trail().newest().stamp, stamp);
+  return since_s > kSparse_s && since_s < kMaxWaiting_s;
 }
 
 /// Finds the points of the last frame that was seen again, where optical flow lost them, and measures the motion anew.
