@@ -46,7 +46,8 @@ constexpr std::array kKinds{
     KindEntry{FaultKind::kTimeJump, "jump", 3600, -1e9, 1e9,
               "times are so many seconds later from here on, or earlier"},
     KindEntry{FaultKind::kOutOfMemory, "memory", 16, 0, 1e6, "from here on only so many more megabytes"},
-    KindEntry{FaultKind::kDiskFull, "disk", 16, 0, 1e9, "from here on no file grows beyond so many kilobytes"}};
+    KindEntry{FaultKind::kDiskFull, "disk", 16, 0, 1e9, "from here on no file grows beyond so many kilobytes"},
+    KindEntry{FaultKind::kDiskStall, "disk_stall", 1.5, 0, 3600, "the disk takes its results so many seconds later"}};
 
 [[noreturn]] void fail(std::string_view part, const std::string& why) {
   throw UsageError("--inject " + std::string(part) + ": " + why);
@@ -157,6 +158,14 @@ bool strikes(const Fault& fault, std::size_t index_of_fault, FrameId frame, std:
   if (fault.share >= 1) return true;
   std::mt19937_64 random(seedOf(seed, index_of_fault, frame));
   return std::uniform_real_distribution<double>(0, 1)(random) < fault.share;
+}
+
+double diskStall_s(const FaultSpec& spec, FrameId frame) {
+  double stall_s = 0;
+  for (std::size_t k = 0; k < spec.faults.size(); ++k)
+    if (spec.faults[k].kind == FaultKind::kDiskStall && strikes(spec.faults[k], k, frame, spec.seed))
+      stall_s += spec.faults[k].value;
+  return stall_s;
 }
 
 }  // namespace motorcade

@@ -34,7 +34,8 @@ enum class FaultKind {
   kStall,        // nothing comes for so many seconds, then the rest at once
   kTimeJump,     // times are so many seconds later from here on
   kOutOfMemory,  // from here on the process gets so many more megabytes and no more
-  kDiskFull      // from here on no file grows beyond so many kilobytes
+  kDiskFull,     // from here on no file grows beyond so many kilobytes
+  kDiskStall     // the disk takes its results so many seconds later
 };
 
 enum class FaultSide { kBoth, kLeft, kRight };
@@ -64,6 +65,9 @@ std::string faultHelp();
 
 /// True if the fault affects this frame. The answer depends only on the arguments.
 bool strikes(const Fault& fault, std::size_t index_of_fault, FrameId frame, std::uint64_t seed);
+
+/// Time for which the disk stalls before it takes the frame's results; 0 where it does not.  [s]
+double diskStall_s(const FaultSpec& spec, FrameId frame);
 
 /// A seed for the random part of a fault in a frame.
 std::uint64_t seedOf(std::uint64_t seed, std::size_t index_of_fault, FrameId frame);

@@ -7,8 +7,8 @@
 
 namespace motorcade {
 
-/// Follows a run while it goes on, to show it or to write more of it. Neither call may wait. Only the second may in a
-/// replay that has to wait for a writer.
+/// Follows a run while it goes on, to show it or to write a file of its own. Neither call may wait. Only the second may
+/// in a replay that has to wait for a writer.
 class RunListener {
  public:
   virtual ~RunListener() = default;

@@ -42,7 +42,7 @@ ObjectViewWriter::ObjectViewWriter(const fs::path& run_folder, const StereoCamer
   points_.writeLine(kObjectPointsHeader);
 }
 
-void ObjectViewWriter::frameLeft(const PipelineResult& result) {
+void ObjectViewWriter::write(const PipelineResult& result) {
   const FrameEstimate& frame = result.online;
   const int width_px = camera_.width_px, height_px = camera_.height_px;
   writeBytesAtOnce(maskFile(masks_, frame.head.frame), pack_(maskImage(frame, result.masks, width_px, height_px)));

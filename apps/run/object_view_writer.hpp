@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "apps/pipeline/run_listener.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
 #include "apps/run/mask_packer.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/files/line_file.hpp"
@@ -11,11 +11,10 @@ namespace motorcade {
 
 /// Writes the image's view of the objects (`run --masks`): a mask image per frame, for users who map what rests;
 /// outlines as polygons; the followed points. Every failure is an OutputError naming the file.
-class ObjectViewWriter : public RunListener {
+class ObjectViewWriter {
  public:
   ObjectViewWriter(const std::filesystem::path& run_folder, const StereoCamera& camera);
-  void frameEntered(const StereoFrame& /*frame*/) override {}
-  void frameLeft(const PipelineResult& result) override;
+  void write(const PipelineResult& result);
   void close();
 
   /// Removes such files of an earlier run, and no others: they would be taken for this run's.

@@ -9,37 +9,42 @@
 #include "apps/pipeline/run_listener.hpp"
 #include "apps/run/followed_frames.hpp"
 #include "apps/run/plausibility.hpp"
+#include "apps/run/result_files.hpp"
+#include "apps/run/write_queue.hpp"
 #include "apps/watch/own_vehicle_news.hpp"
 #include "apps/watch/vehicle_motion_news.hpp"
 #include "core/messages.hpp"
-#include "io/results/run_folder.hpp"
 
 namespace motorcade {
 
-/// Takes the pipeline's results, in order, into the run folder and to the listeners, and logs oddities.
+/// Takes the pipeline's results, in order, to the listeners and on to their files, and logs oddities. Throws the
+/// OutputError that writing met.
 class Recorder {
  public:
-  Recorder(RunFolderWriter& folder, RunListeners listeners, std::size_t frames);
+  Recorder(const ResultFiles& files, const WriteQueue::Bounds& bounds, RunListeners listeners, std::size_t frames);
 
-  void record(const PipelineResult& result);
-  /// Records frames that never entered. `due` replaces their due times, which are not known.
-  void recordDropped(const std::vector<FrameEstimate>& dropped, SteadyTime due);
-  void recordFinals(const std::vector<FrameEstimate>& finals);
-  /// Ends the recording and returns the findings on the own vehicle.
+  void record(PipelineResult result);
+  /// Records frames after the last result that never entered, as if they had been due now, and those that were still in
+  /// the window.
+  void recordRest(std::vector<FrameEstimate> dropped, std::vector<FrameEstimate> finals);
+  /// Waits until all results are written, as no further one comes, and returns the findings on the own vehicle.
   std::optional<OwnVehicleView> finish();
 
   const FollowedFrames& followed() const { return followed_; }
   const VehicleMotionNews& vehicleMotion() const { return vehicle_motion_; }
+  /// After `finish`.
+  const WriteQueue::Load& writing() const { return queue_.load(); }
 
  private:
-  RunFolderWriter& folder_;
   RunListeners listeners_;
+  bool has_views_;
   Progress progress_;
   Plausibility plausibility_;
   FollowedFrames followed_;
   OwnVehicleNews own_vehicle_;
   VehicleMotionNews vehicle_motion_;
   std::size_t done_ = 0;
+  WriteQueue queue_;
 };
 
 }  // namespace motorcade

@@ -199,6 +199,15 @@ void tellEnd(const SourceEnd& end, RunSummary& summary) {
   summary.refused = summary.refused || end.damaged;
 }
 
+/// A replay waits for its files by intention; where a live run had to, its results are not what they could be.
+void tellBehind(const WriteQueue::Load& writing, InputPolicy policy) {
+  if (policy != InputPolicy::kLive || writing.views_left_out + writing.waits == 0) return;
+  logWarning(fmt::format(
+      "the disk was too slow: masks and points of {} frames are left out, {} results waited for their files, {:.1f} s "
+      "in all",
+      writing.views_left_out, writing.waits, writing.waited_s));
+}
+
 /// Runs the frames through the pipeline and writes all results but the summary.
 void follow(const Replay& replay, const PipelineConfig& config, Stages stages, Recorder& recorder, RunSummary& summary,
             StopSignals& signals) {
@@ -213,16 +222,17 @@ void follow(const Replay& replay, const PipelineConfig& config, Stages stages, R
                    replay.view ? replay.view->gate() : nullptr});
     const FollowedPipeline followed(replay.view, pipeline);
     const auto watch = signals.watch([&feeder] { feeder.stop(); });
-    while (const auto result = pipeline.next()) recorder.record(*result);
+    while (auto result = pipeline.next()) recorder.record(*std::move(result));
   }
-  const PipelineEnd end = pipeline.finish();
-  for (const PipelineResult& result : end.results) recorder.record(result);
-  recorder.recordDropped(end.dropped, std::chrono::steady_clock::now());
-  recorder.recordFinals(end.finals);
+  PipelineEnd end = pipeline.finish();
+  for (PipelineResult& result : end.results) recorder.record(std::move(result));
+  recorder.recordRest(std::move(end.dropped), std::move(end.finals));
+  summary.own_vehicle = recorder.finish();
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.pipeline = end.summary;
   summary.good_frames = recorder.followed().count();
-  summary.own_vehicle = recorder.finish();
+  summary.writing = recorder.writing();
+  tellBehind(summary.writing, config.pipeline.policy);
   if (const auto& sensors = recorder.vehicleMotion().sensors())
     summary.vehicle_motion = {.found = *sensors,
                               .samples = static_cast<std::int64_t>(replay.input.vehicle_motion.size()),
@@ -247,10 +257,11 @@ class ExtraOutputs {
 
   RunListeners listeners() {
     RunListeners listeners;
-    if (views_) listeners.push_back(&*views_);
     if (mcap_) listeners.push_back(&*mcap_);
     return listeners;
   }
+  /// Null where the user wants none.
+  ObjectViewWriter* views() { return views_ ? &*views_ : nullptr; }
   void close(RunSummary& summary) {
     if (views_) views_->close();
     if (mcap_) closeMcap(summary);
@@ -316,7 +327,8 @@ int runSequence(const RunOptions& options) {
   ExtraOutputs extras(options, sequence.camera, config.pipeline.policy);
   RunListeners listeners = extras.listeners();
   if (view) listeners.push_back(view.get());
-  Recorder recorder(folder, listeners, input.count());
+  Recorder recorder(ResultFiles(folder, extras.views(), fault_spec), WriteQueue::boundsOf(config.pipeline.policy),
+                    listeners, input.count());
   FaultInjector faults(fault_spec, sequence);
   InputWatch watch(sequence.camera, options.force);
   follow({input, inputs, options.inject.empty() ? nullptr : &faults, &watch, listeners, view.get()}, config,

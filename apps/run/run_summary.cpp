@@ -129,6 +129,14 @@ Json programVersions() {
   return json;
 }
 
+Json toJson(const WriteQueue::Load& writing) {
+  return {{"high_water", writing.high_water},
+          {"bound", writing.bound},
+          {"views_left_out", writing.views_left_out},
+          {"waits", writing.waits},
+          {"waited_s", rounded(writing.waited_s)}};
+}
+
 Json toJson(const McapSummary& mcap) {
   return {{"file", mcap.file},
           {"bytes", mcap.bytes},
@@ -198,6 +206,7 @@ std::string toJson(const RunSummary& summary) {
             {"stolen_s", rounded(summary.used.stolen_s)},
             {"involuntary_switches", summary.used.involuntary_switches},
             {"queues", queues},
+            {"writing", toJson(summary.writing)},
             {"solver", toJson(pipeline.solver)},
             {"versions", programVersions()}};
   if (summary.vehicle_motion) json["vehicle_motion"] = toJson(*summary.vehicle_motion);

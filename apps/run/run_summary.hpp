@@ -7,6 +7,7 @@
 
 #include "apps/pipeline/pipeline.hpp"
 #include "apps/run/process_usage.hpp"
+#include "apps/run/write_queue.hpp"
 #include "apps/watch/rig_watch.hpp"
 #include "io/inputs/pair_source.hpp"
 #include "io/sequence/sequence.hpp"
@@ -30,7 +31,8 @@ struct ImageCounts {
 struct RunSummary {
   PipelineSummary pipeline;
   PipelineParams params;
-  QueueMark decoded;  // pairs waiting for the feeder
+  QueueMark decoded;         // pairs waiting for the feeder
+  WriteQueue::Load writing;  // of results, to their files
   std::string sequence, layout;
   ImageCounts images;
   GivenCameras given;                // what the user said of them

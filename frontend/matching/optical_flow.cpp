@@ -41,6 +41,7 @@ constexpr int kMaxWaiting_frames = 3;    // then all points start anew
 constexpr double kMaxWaiting_s = 0.5;    // beyond it points look different, and the scene flow stage finds them better
 constexpr double kStanding_px = 0.5;     // points that moved by less since the last frame may rest
 constexpr double kUnevenInterval = 1.5;  // times the interval before: frames are missing
+constexpr double kSparse_s = 0.15;  // between frames: where a sharp one shows few of the points, the next one would too
 
 constexpr double kSiftMaxFlow_px = 150, kSiftMaxFlowRatio = 0.85;  // as `matchSift` takes them
 
@@ -90,6 +91,7 @@ struct OpticalFlowTracker::State {
   std::vector<std::optional<AlignedPatch>> findMoving(const PointFollower& follower, double intervals,
                                                       std::span<const int> order) const;
   bool isFrozen(const Features& now) const;
+  bool isSparse(const Features& now) const;
   std::optional<double> shareOf(const std::vector<std::optional<AlignedPatch>>& found) const;
   bool isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found, double intervals) const;
   void followYoung(const PointFollower& follower, const Features& now, std::span<const int> order);
@@ -201,6 +203,13 @@ double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
   return interval_s > 0 ? secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) / interval_s : 1;
 }
 
+/// As much may have changed as over missing frames, however regular the frames are, and there is nothing wrong with the
+/// image.
+bool OpticalFlowTracker::State::isSparse(const Features& now) const {
+  return secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) > kSparse_s && !isFrozen(now) &&
+         textureOf(now) >= kSharpShare * textureOf(*previous);
+}
+
 bool OpticalFlowTracker::State::mayWait(Timestamp now) const {
   return previous && waiting_frames < kMaxWaiting_frames &&
          secondsBetween(previous->frame->head.stamp, now) < kMaxWaiting_s;
@@ -211,8 +220,8 @@ bool OpticalFlowTracker::State::advance(const FeaturesPtr& features) {
   const Features& now = *features;
   const bool followed = previous && follow(now);
   if (previous && !followed) {
-    const bool frames_are_missing = waiting_frames == 0 && intervalsSince(now) > kUnevenInterval;
-    if (!frames_are_missing && mayWait(now.frame->head.stamp)) return false;
+    const bool looks_different = waiting_frames == 0 && (intervalsSince(now) > kUnevenInterval || isSparse(now));
+    if (!looks_different && mayWait(now.frame->head.stamp)) return false;
     points.clear();
     interval_s = 0;
   }

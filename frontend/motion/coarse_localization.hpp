@@ -28,7 +28,8 @@ struct MotionRange {
 
 /// Finds the motions within a range under which small patches around points at rest look most alike in both images, the
 /// best first. It searches all distances and turns at the coarsest level of the pyramid, for when nothing is near
-/// enough to be aligned. Exact to some pixels, where it is right at all.
+/// enough to be aligned. Exact to some pixels, where it is right at all. Its work grows with the
+/// range in each direction and with nothing else: some of the points tell which motions are worth asking all of them.
 std::vector<SE3> localizeCoarsely(std::span<const RestingPoint> points, const ImagePyramid& then,
                                   const ImagePyramid& now, const MotionRange& range, const StereoCamera& camera);
 

@@ -12,6 +12,9 @@ namespace motorcade {
 namespace {
 
 constexpr double kGapIntervals = 1.5;  // since the last frame that was seen: frames are missing
+// Between frames of a sparse drive: optical flow lets points wait for a better image up to the first, and none wait
+// beyond the second.
+constexpr double kSparse_s = 0.15, kMaxWaiting_s = 0.5;
 // Flow over a gap is trusted when so many points agree on a motion, and such a share of those that were followed.
 constexpr int kSureInliers = 60;
 constexpr double kSureShare = 0.6;
@@ -50,6 +53,17 @@ OpticalFlow merged(const OpticalFlow& flow, const std::vector<FlowObservation>& 
   return all;
 }
 
+/// The points that flow lost. Both are ordered by point.
+std::vector<RestingPoint> without(const OpticalFlow& flow, const std::vector<RestingPoint>& points) {
+  std::vector<RestingPoint> lost;
+  auto followed = flow.observations.begin();
+  for (const RestingPoint& point : points) {
+    followed = std::ranges::lower_bound(followed, flow.observations.end(), point.point, {}, &FlowObservation::point);
+    if (followed == flow.observations.end() || followed->point != point.point) lost.push_back(point);
+  }
+  return lost;
+}
+
 }  // namespace
 
 SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoCamera& camera)
@@ -71,6 +85,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
   const MeasuredFrame measured = measure(*stereo, *flow);
+  if (mayBeABadImage(measured.camera, frame.head.stamp)) return passOver(frame);
   const Odometry odometry = odometry_.add(frame.head.stamp, measured.camera);
   const Observations of_world = learnOwnVehicle(measured);
   tracks_.update(measured.flow, of_world, odometry_.trail());
@@ -135,6 +150,13 @@ bool SceneFlowSegmentation::isAfterGap(Timestamp stamp) const {
   return before && secondsBetween(trail.newest().stamp, stamp) > -kGapIntervals * before->dt_s;
 }
 
+/// One frame of a sparse drive that is not linked to the last one: the next one may be.
+bool SceneFlowSegmentation::mayBeABadImage(const CameraMotion& camera, Timestamp stamp) const {
+  if (camera.status == FrameStatus::kGood || odometry_.trail().empty() || isAfterGap(stamp)) return false;
+  const double since_s = secondsBetween(odometry_.trail().newest().stamp, stamp);
+  return since_s > kSparse_s && since_s < kMaxWaiting_s;
+}
+
 /// Finds the points of the last frame that was seen again, where optical flow lost them, and measures the motion anew.
 /// Where that fails, the motion is not known.
 SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const StereoMatches& stereo, MeasuredFrame measured,
@@ -142,19 +164,22 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const Stereo
   if (odometry_.trail().empty() || !tracks_.featuresOfLast()) return measured;
   const Features& now = *stereo.features;
   const std::vector<RestingPoint> points = tracks_.seenLast();
-  const GapBridge::Gap gap{.points = points,
-                           .then = *tracks_.featuresOfLast(),
-                           .now = now,
-                           .disparity_offset_px = disparity_offset_.offset_px(),
-                           .duration_s = predicted.dt_s,
-                           .ahead_frames = predicted.ahead_frames};
+  GapBridge::Gap gap{.points = points,
+                     .then = *tracks_.featuresOfLast(),
+                     .now = now,
+                     .disparity_offset_px = disparity_offset_.offset_px(),
+                     .duration_s = predicted.dt_s,
+                     .ahead_frames = predicted.ahead_frames};
   std::optional<SE3> T_then_now;
   if (isSure(measured.camera)) T_then_now = measured.camera.T_seen_now;
   if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s) T_then_now = gap_bridge_.locate(gap, predicted.T_seen_now);
   if (T_then_now && !odometry_.believes(*T_then_now, predicted)) T_then_now.reset();
-  if (T_then_now)
+  if (T_then_now) {
+    const std::vector<RestingPoint> lost = without(measured.flow, points);
+    gap.points = lost;
     measured = measure(stereo, merged(measured.flow, gap_bridge_.find(gap, *T_then_now)),
                        {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
+  }
   CameraMotion& camera = measured.camera;
   if (T_then_now && camera.status == FrameStatus::kGood && agree(camera.T_seen_now, *T_then_now)) {
     camera.cause = FrameCause::kAfterGap;

@@ -49,6 +49,7 @@ class SceneFlowSegmentation {
   MeasuredFrame measure(const StereoMatches& stereo, const OpticalFlow& flow, const PredictedMotion& predicted) const;
   MeasuredFrame bridged(const StereoMatches& stereo, MeasuredFrame measured, const PredictedMotion& predicted) const;
   bool isAfterGap(Timestamp stamp) const;
+  bool mayBeABadImage(const CameraMotion& camera, Timestamp stamp) const;
   Observations learnOwnVehicle(const MeasuredFrame& measured);
   SceneMotionPtr passOver(const StereoFrame& unseen);
   std::shared_ptr<SceneMotion> newMotion(const FrameHead& head, const Odometry& odometry);

@@ -19,7 +19,7 @@ BEGIN {
     stage("tracking", "trackObjects")
     stage("incremental optimization", "optimize")
     stage("object shapes", "shapeObjects")
-    part("mask files", "motorcade::ObjectViewWriter::frameLeft(", frames)
+    part("mask files", "motorcade::ObjectViewWriter::write(", frames)
     part("last estimates", "motorcade::StageRunner::finish()", 1)
   }
 }

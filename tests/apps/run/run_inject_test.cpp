@@ -107,5 +107,27 @@ TEST_F(Inject, AFullDiskAndABadSpecificationEndTheRun) {
   EXPECT_THAT(contentOf(errors()), HasSubstr("blak is no fault"));
 }
 
+TEST_F(Inject, ASlowDiskDelaysAReplayAndChangesNothing) {
+  ASSERT_EQ(run("quick"), 0);
+  inject("slow", "disk_stall=2@1");
+  EXPECT_EQ(summary("slow")["frames"]["dropped"], 0);
+  EXPECT_LE(summary("slow")["writing"]["high_water"], summary("slow")["writing"]["bound"]);
+  EXPECT_GE(summary("slow")["wall_s"].get<double>(), 2);
+  expectSame("quick", "slow");
+}
+
+/// The disk stalls for longer than the rest of the drive takes: whatever comes out meanwhile did not wait for it.
+TEST_F(Inject, AStalledDiskHoldsUpNoFrameOfALiveRun) {
+  constexpr double kStall_s = 4;
+  ASSERT_EQ(run("stalled", "--live --rate 10 --inject disk_stall=4@1"), 0) << contentOf(errors());
+  const RunFolder folder = readRunFolder(out("stalled"));
+  ASSERT_EQ(folder.frames.size(), kFrames);
+  for (const FrameRow& frame : folder.frames) EXPECT_LT(frame.latency_ms, 1e3 * kStall_s) << frame.head.frame.value;
+  const auto told = summary("stalled");
+  EXPECT_GE(told["writing"]["high_water"].get<int>() + 1, told["frames"]["processed"].get<int>())
+      << "all but the first waited";
+  EXPECT_EQ(told["writing"]["waits"], 0);
+}
+
 }  // namespace
 }  // namespace motorcade::test

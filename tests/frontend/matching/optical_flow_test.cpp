@@ -193,6 +193,30 @@ TEST(OpticalFlowTracker, PointsStartAnewAfterALongTimeWithoutImages) {
   EXPECT_EQ(countOfAge(*after, 2), 0);
 }
 
+/// A sharp image of which hardly anything is known: at 10 Hz something is wrong with it, at 3.3 Hz the camera went on.
+TEST(OpticalFlowTracker, PointsStartAnewWhereSparseFramesShowFewOfThem) {
+  const MovingWall wall(3, 0), elsewhere(0, 500);
+  for (const int interval : {1, 3}) {
+    OpticalFlowTracker track({});
+    for (int frame = 0; frame < 3; ++frame) track(at(wall.at(frame), interval * frame));
+    const auto flow = track(at(elsewhere.at(1), interval * 3));
+    EXPECT_EQ(flow->observations.empty(), interval == 1);
+    EXPECT_EQ(countOfAge(*flow, 2), 0);
+  }
+}
+
+TEST(OpticalFlowTracker, PointsWaitForABetterImageAlsoWhereFramesAreSparse) {
+  const MovingWall wall(3, 0);
+  const FeaturesPtr black = uniform(0, *wall.at(0)), frozen = wall.at(2);
+  for (const FeaturesPtr& useless : {black, frozen}) {
+    OpticalFlowTracker track({});
+    for (int frame = 0; frame < 3; ++frame) track(at(wall.at(frame), 2 * frame));
+    EXPECT_TRUE(track(at(useless, 6))->observations.empty());
+    const auto after = track(at(wall.at(4), 8));
+    EXPECT_GT(countOfAge(*after, 4), 0.7 * static_cast<double>(after->observations.size()));
+  }
+}
+
 TEST(OpticalFlowTracker, StartsAgainWhenTheImageSizeChanges) {
   const Image small = test::render(200, 120, test::Texture(62));
   OpticalFlowTracker track({});

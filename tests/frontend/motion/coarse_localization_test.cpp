@@ -33,6 +33,19 @@ TEST(CoarseLocalization, FindsAMotionThatIsFarFromThePredictedOne) {
   }
 }
 
+/// As many motions as after two seconds, of which a quarter of the points make a choice.
+TEST(CoarseLocalization, FindsAMotionAmongTensOfThousands) {
+  const MotionRange range{.T_then_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, 22}), .forward_m = 20, .yaw_rad = 1.0};
+  const SE3 T_then_now = SE3::exp((Vector6d() << 0, 0, 9.4, 0.01, -0.25, 0).finished());
+  for (unsigned seed = 5; seed < 8; ++seed) {
+    const test::WallWithPoints wall(seed);
+    const auto then = wall.seenFrom(SE3{}, 0), now = wall.seenFrom(T_then_now, 1);
+    const auto found = localizeCoarsely(wall.points(), then->left, now->left, range, kSmallRig);
+    ASSERT_FALSE(found.empty()) << seed;
+    EXPECT_LT(farthestApart_px(wall.points(), T_then_now, found.front()), 16) << seed;
+  }
+}
+
 TEST(CoarseLocalization, WithoutPointsThereIsNothingToFind) {
   const test::WallWithPoints wall(4);
   const auto features = wall.seenFrom(SE3{}, 0);

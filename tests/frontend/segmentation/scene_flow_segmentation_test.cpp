@@ -73,6 +73,34 @@ TEST(SceneFlowSegmentation, FindsTheDisparityOfANearVehicleWhateverItsSpeed) {
   }
 }
 
+/// Five frames a second, of which one shows something else and no known point.
+TEST(SceneFlowSegmentation, OneBadImageOfASparseDriveBreaksNoLink) {
+  const test::TwoSurfaces scene(2.0);
+  SceneFlowSegmentation estimate({}, test::kSmallRig);
+  for (const int frame : {0, 2, 4}) {
+    const auto stereo = scene.stereo(frame);
+    ASSERT_EQ(estimate(stereo, scene.flow(*stereo, frame))->head.status, FrameStatus::kGood);
+  }
+  const auto seen = scene.stereo(6);
+  const auto gray =
+      test::render(test::kSmallRig.width_px, test::kSmallRig.height_px, [](double, double) { return 128; });
+  auto features = std::make_shared<Features>(*seen->features);
+  features->left.levels = features->right.levels = {gray};
+  auto stereo = std::make_shared<StereoMatches>(*seen);
+  stereo->features = features;
+  auto flow = std::make_shared<OpticalFlow>(*scene.flow(*seen, 6));
+  flow->features = features;
+  for (FlowObservation& observed : flow->observations) observed.point.value += 1000, observed.age = 1;
+  EXPECT_EQ(estimate(stereo, flow)->head.status, FrameStatus::kLost);
+
+  const auto next = scene.stereo(8);
+  const auto motion = estimate(next, scene.flow(*next, 8));
+  EXPECT_EQ(motion->head.status, FrameStatus::kGood);
+  EXPECT_EQ(motion->head.cause, FrameCause::kAfterGap);
+  EXPECT_EQ(motion->head.segment, 0);
+  EXPECT_GT(motion->ego_inliers, test::TwoSurfaces::kWallPoints / 2);
+}
+
 /// A surface 3 m ahead that keeps the camera's pace.
 TEST(SceneFlowSegmentation, PointsThatAreFixedToTheCameraTakePartInNothing) {
   const test::TwoSurfaces scene(test::TwoSurfaces::kCameraStep_m, 3);
