@@ -23,6 +23,7 @@ const char* nameOf(Trust trust) {
 Trust trustIn(const Result& result, Level level) {
   if (level == Level::kStarting || level == Level::kBlind) return Trust::kNone;
   if (result.status != Result::Status::kGood) return Trust::kPredicted;
+  if (!result.problem.empty()) return Trust::kNone;  // the rig is not what its calibration says, or a stage failed
   if (result.cause != Result::Cause::kNone || level == Level::kDegraded) return Trust::kUncertain;
   return Trust::kMeasured;
 }

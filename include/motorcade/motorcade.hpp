@@ -62,8 +62,8 @@ struct Camera {
     std::vector<std::uint8_t> mask{};  // of width_px x height_px, or empty
   };
   Ignored ignored{};
-  /// Standard deviations of the calibration's errors, which stay constant; all covariances contain their effect. Zeros:
-  /// the calibration is exact. Empty: the values below, or those in `Options::settings`.
+  /// Standard deviations of the calibration's errors, which stay constant; covariances of poses and objects hold them.
+  /// Zeros: the calibration is exact. Empty: the values below, or those in `Options::settings`.
   struct Sigmas {
     double focal = 0.002;        // of the focal length of both cameras, as a share
     double middle_px = 0.7;      // of the principal point of both, each way

@@ -128,11 +128,13 @@ TEST(Quaternion, IsThatOfTheRotationOnEachOfItsBranches) {
 }
 
 TEST(Trust, IsNeverMoreThanLevelFrameAndObjectAllow) {
-  const Result good, lost{.status = Result::Status::kLost}, doubtful{.cause = Result::Cause::kAfterGap};
+  const Result good, lost{.status = Result::Status::kLost}, doubtful{.cause = Result::Cause::kAfterGap},
+      wrong_rig{.problem = "the pairs are not rectified"};
   EXPECT_EQ(trustIn(good, Level::kHealthy), Trust::kMeasured);
   EXPECT_EQ(trustIn(good, Level::kDegraded), Trust::kUncertain);
   EXPECT_EQ(trustIn(doubtful, Level::kHealthy), Trust::kUncertain);
   EXPECT_EQ(trustIn(lost, Level::kHealthy), Trust::kPredicted);
+  EXPECT_EQ(trustIn(wrong_rig, Level::kHealthy), Trust::kNone);
   EXPECT_EQ(trustIn(good, Level::kBlind), Trust::kNone);
   EXPECT_EQ(trustIn(good, Level::kStarting), Trust::kNone);
 
