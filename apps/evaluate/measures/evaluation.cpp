@@ -12,6 +12,7 @@
 #include "io/files/errors.hpp"
 #include "io/files/line_file.hpp"
 #include "io/files/number_text.hpp"
+#include "io/sequence/pose_interpolation.hpp"
 #include "io/truth/stamped_poses.hpp"
 #include "io/truth/trajectory.hpp"
 
