@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -11,6 +12,7 @@
 
 #include "apps/commands/command_line.hpp"
 #include "apps/console/log.hpp"
+#include "core/instruction_set.hpp"
 #include "io/files/errors.hpp"
 
 namespace {
@@ -42,6 +44,15 @@ constexpr int kExitInternal = 70;
   endWith("motorcade: internal error\n");
 }
 
+/// Chooses the kernels' instructions, which the environment may name.
+void chooseKernels() {
+  try {
+    motorcade::chooseInstructions();
+  } catch (const std::invalid_argument& error) {
+    throw motorcade::UsageError(error.what());
+  }
+}
+
 /// Runs the command and turns an exception into a message and an exit code.
 int perform(const std::function<int()>& action) {
   try {
@@ -69,9 +80,12 @@ int main(int argc, char** argv) {
   std::set_terminate(endWithCurrentException);
   try {
     motorcade::startLog();
-    const motorcade::CommandLine command_line = motorcade::parseCommandLine(argc, argv);
-    return command_line.action ? perform(command_line.action) : command_line.exit_code;
-  } catch (...) {  // the logger itself, or the parser
+    return perform([&] {
+      chooseKernels();
+      const motorcade::CommandLine command_line = motorcade::parseCommandLine(argc, argv);
+      return command_line.action ? command_line.action() : command_line.exit_code;
+    });
+  } catch (...) {  // the logger itself
     std::fputs("motorcade: internal error\n", stderr);
     return kExitInternal;
   }

@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libtbb-dev libsuitesparse-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-features2d-dev
-  libpng-dev libjpeg62-turbo-dev libdeflate-dev zlib1g-dev libzstd-dev liblz4-dev libsqlite3-dev
+  libpng-dev libjpeg62-turbo-dev libdeflate-dev libhwy-dev zlib1g-dev libzstd-dev liblz4-dev libsqlite3-dev
   libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libyaml-cpp-dev libxxhash-dev
   pkg-config libcairo2-dev fonts-dejavu-core libcpp-httplib-dev libjs-three libjs-chart.js libprotobuf-dev protobuf-compiler
   help2man

@@ -122,3 +122,14 @@ function(motorcade_options target)
   # entries that a short vector does not use for read.
   target_compile_options(${target} PRIVATE -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endfunction()
+
+# Kernels: Highway compiles them for several instruction sets, and the program takes the best that its processor has when it first calls one
+# (core/instruction_set.hpp). A source includes itself once for each, so it is a unit of its own.
+# Others than x86-64 have one version; NEON is a part of arm64.
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64)$")
+  add_compile_definitions(HWY_COMPILE_ONLY_SCALAR)
+endif()
+function(motorcade_kernels target)
+  target_sources(${target} PRIVATE ${ARGN})
+  set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -1,39 +1,46 @@
 #include "core/instruction_set.hpp"
 
-#include <algorithm>
 #include <cstdlib>
-#include <cstring>
+#include <mutex>
+#include <stdexcept>
+#include <string>
 
 namespace motorcade {
 namespace {
 
-#if defined(MOTORCADE_DISPATCH)
-InstructionSet suited() {
-  __builtin_cpu_init();
-  const char* const wanted = secure_getenv("MOTORCADE_INSTRUCTIONS");
-  if (wanted != nullptr && std::strcmp(wanted, "any") == 0) return InstructionSet::kAny;
-  return __builtin_cpu_supports("x86-64-v3") != 0 ? InstructionSet::kX86V3 : InstructionSet::kAny;
+/// Highway takes a processor without any of its targets for one without vectors; but x86-64 has SSE2, and arm64 NEON.
+std::string nameOf(std::int64_t target) {
+  if (target == HWY_SCALAR || target == HWY_EMU128) return HWY_ARCH_X86 ? "SSE2" : "NEON";
+  return hwy::TargetName(target);
 }
-#elif defined(__x86_64__)
-InstructionSet suited() { return InstructionSet::kX86V3; }
-#else
-InstructionSet suited() { return InstructionSet::kAny; }
-#endif
+
+/// Targets that are better than those of a name. Better ones have lower bits.
+std::int64_t betterThan(const std::string& name) {
+  if (name == "any") return HWY_STATIC_TARGET - 1;
+  std::string known = "any";
+  for (std::int64_t rest = HWY_TARGETS; rest != 0; rest &= rest - 1) {
+    const std::int64_t target = rest & -rest;
+    if (name == nameOf(target)) return target - 1;
+    known += ", " + nameOf(target);
+  }
+  throw std::invalid_argument("MOTORCADE_INSTRUCTIONS=" + name + ": must be one of " + known);
+}
+
+std::mutex choosing;  // Highway takes no care of several threads
 
 }  // namespace
 
-InstructionSet instructionSet() { return suited(); }
+void chooseInstructions() {
+  const std::lock_guard lock(choosing);
+  const char* const wanted = secure_getenv("MOTORCADE_INSTRUCTIONS");
+  hwy::DisableTargets(wanted != nullptr ? betterThan(wanted) : 0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
 
-const char* nameOf(InstructionSet instructions) {
-#ifdef __x86_64__
-  return instructions == InstructionSet::kX86V3 ? "x86-64-v3" : "x86-64";
-#else
-  return instructions == InstructionSet::kX86V3 ? "" : "generic";
-#endif
+std::string instructionSet() {
+  chosenInstructions();
+  const std::int64_t targets = (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
+  return nameOf(targets & -targets);
 }
 
 }  // namespace motorcade
-
-void motorcade_choose_kernels(void** chosen, void* const* v3, std::size_t count) {
-  if (motorcade::instructionSet() == motorcade::InstructionSet::kX86V3) std::copy_n(v3, count, chosen);
-}

@@ -9,7 +9,7 @@ root=$PWD/build/arm64_root build=build/arm64
 apps/setup.sh g++-aarch64-linux-gnu debootstrap qemu-user
 if [[ ! -e $root/usr/lib/aarch64-linux-gnu/libdeflate.so ]]; then
   debootstrap --foreign --arch=arm64 --variant=minbase \
-    --include=libtbb-dev,libsuitesparse-dev,libpng-dev,libjpeg62-turbo-dev,libdeflate-dev,zlib1g-dev,libyaml-cpp-dev,libeigen3-dev,nlohmann-json3-dev,libtomlplusplus-dev \
+    --include=libtbb-dev,libsuitesparse-dev,libpng-dev,libjpeg62-turbo-dev,libdeflate-dev,zlib1g-dev,libyaml-cpp-dev,libeigen3-dev,nlohmann-json3-dev,libtomlplusplus-dev,libhwy-dev \
     bookworm "$root" >/dev/null
   for package in "$root"/var/cache/apt/archives/*.deb; do dpkg-deb --extract "$package" "$root"; done
 fi

@@ -46,7 +46,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
   return {{"motorcade", MOTORCADE_VERSION},
           {"build", MOTORCADE_BUILD},
           {"compiler", kCompiler},
-          {"instruction_set", nameOf(instructionSet())},
+          {"instruction_set", instructionSet()},
           {"onetbb", TBB_runtime_version()},
           {"eigen", numbered(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
           {"opencv", CV_VERSION},

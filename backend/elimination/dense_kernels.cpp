@@ -5,15 +5,19 @@
 #include <cmath>
 #include <limits>
 
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "backend/elimination/dense_kernels.cpp"
+#include <hwy/foreach_target.h>
+
 #include "backend/graph/lanes.hpp"
 
-namespace motorcade {
-
-using namespace lanes;
-
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
-constexpr int kTileVecs = 3;  // 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers
+/// 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers. Of smaller registers, a vector takes two.
+constexpr int kTileVecs = 3, kTileVecsOfProduct = kParts == 1 ? kTileVecs : 1;
 /// Columns that an outer product takes at once: what stays in the first-level caches of data and pages.
 constexpr int kMaxDepth = 48;
 
@@ -21,12 +25,13 @@ int vecsFor(int rows) { return (rows + kLanes - 1) / kLanes; }
 
 /// Walks down `vecs` vectors of rows in tiles: `f.template operator()<height>(first)`. Four are two and two, as one
 /// alone makes the sums wait for each other.
-template <class F>
+template <int kMost, class F>
 [[gnu::always_inline]] inline void forTiles(int first, int vecs, const F& f) {
-  for (; vecs > kTileVecs + 1 || vecs == kTileVecs; vecs -= kTileVecs, first += kTileVecs)
-    f.template operator()<kTileVecs>(first);
-  for (; vecs >= 2; vecs -= 2, first += 2) f.template operator()<2>(first);
-  if (vecs == 1) f.template operator()<1>(first);
+  if constexpr (kMost > 1) {
+    for (; vecs > kMost + 1 || vecs == kMost; vecs -= kMost, first += kMost) f.template operator()<kMost>(first);
+    for (; vecs >= 2; vecs -= 2, first += 2) f.template operator()<2>(first);
+  }
+  for (; vecs > 0; --vecs, ++first) f.template operator()<1>(first);
 }
 
 /// 4V x N entries of a matrix, in registers.
@@ -122,7 +127,7 @@ struct Triangle {
   template <int V>
   [[gnu::always_inline]] void clear(Tile<V, N>& tile, int c) {
     for (int v = 0; v < V; ++v) tile.at[v][c] = Vec{};
-    tile.at[0][c][c] = 1;
+    tile.at[0][c].set(c, 1);
     for (int r = c + 1; r < N; ++r) below[c][r] = 0;
   }
 };
@@ -134,7 +139,8 @@ double factorizeColumns(const Panel& panel, int first, std::vector<int>& singula
   const int ld = panel.ld, rows = panel.rows;
   double* const columns = panel.data + first * ld;
   Triangle<N> triangle;
-  forTiles(0, vecsFor(rows - first), [&]<int V>(int vec) {
+  // The first tile's rows are rounded otherwise than those of others: its height is the same for all instructions.
+  forTiles<kTileVecs>(0, vecsFor(rows - first), [&]<int V>(int vec) HWY_ATTR {
     const int row = first + vec * kLanes;
     Tile<V, N> tile;
     tile.loadFrom(columns + row, ld);
@@ -185,7 +191,7 @@ struct OuterProduct {
 
   template <int V>
   [[gnu::always_inline]] void subtractDiagonal(int row) const {
-    withConstant<kLanes>(std::min(n - row, kLanes), [&]<int N>() { subtractTile<V, N>(row, row); });
+    withConstant<kLanes>(std::min(n - row, kLanes), [&]<int N>() HWY_ATTR { subtractTile<V, N>(row, row); });
     if constexpr (V > 1) subtractDiagonal<V - 1>(row + kLanes);
   }
 };
@@ -193,10 +199,10 @@ struct OuterProduct {
 /// Rows i to i + kCount - 1 of H += J^T J, of K rows of J whose columns are `stride` apart.
 template <int K, int kCount>
 [[gnu::always_inline]] inline void addRowsOfProduct(const double* jacobian, int stride, int i, double* h, int ldh) {
-  const auto entry = [&](int k, int lane) { return lane < kCount ? jacobian[k + (i + lane) * stride] : 0.0; };
+  const auto entry = [&](int k, int lane) HWY_ATTR { return lane < kCount ? jacobian[k + (i + lane) * stride] : 0.0; };
   Vec transposed[K];
 #pragma GCC unroll 6
-  for (int k = 0; k < K; ++k) transposed[k] = Vec{entry(k, 0), entry(k, 1), entry(k, 2), entry(k, 3)};
+  for (int k = 0; k < K; ++k) transposed[k] = four(entry(k, 0), entry(k, 1), entry(k, 2), entry(k, 3));
   for (int j = 0; j < i + kCount; ++j) {
     Vec total = load(h + i + j * ldh);
 #pragma GCC unroll 6
@@ -210,33 +216,35 @@ void addProduct(const double* jacobian, int stride, int cols, double* h, int ldh
   int i = 0;
   for (; i + kLanes <= cols; i += kLanes) addRowsOfProduct<K, kLanes>(jacobian, stride, i, h, ldh);
   if (i < cols)
-    withConstant<kLanes - 1>(cols - i, [&]<int kCount>() { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
+    withConstant<kLanes - 1>(cols - i,
+                             [&]<int kCount>() HWY_ATTR { addRowsOfProduct<K, kCount>(jacobian, stride, i, h, ldh); });
 }
 
 }  // namespace
 
-double factorizePanel(const Panel& panel, std::vector<int>& singular) {
+double factorize(const Panel& panel, std::vector<int>& singular) {
   assert(panel.ld % kLanes == 0 && panel.ld >= panel.rows && panel.rows > panel.columns);
   double largest_growth = 1;
   for (int first = 0; first < panel.columns; first += kLanes) {
-    withConstant<kLanes>(std::min(panel.columns - first, kLanes), [&]<int N>() {
+    withConstant<kLanes>(std::min(panel.columns - first, kLanes), [&]<int N>() HWY_ATTR {
       largest_growth = std::max(largest_growth, factorizeColumns<N>(panel, first, singular));
     });
   }
   return 1 / largest_growth;
 }
 
-void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, int k) {
+void subtractProduct(double* c, int ldc, const double* a, int lda, int n, int k) {
   assert(ldc % kLanes == 0 && ldc >= n && lda % kLanes == 0);
   const int passes = (k + kMaxDepth - 1) / kMaxDepth;
   for (int pass = 0; pass < passes; ++pass) {
     const int from = k * pass / passes, to = k * (pass + 1) / passes;
     const OuterProduct product{.c = c, .ldc = ldc, .a = a + from * lda, .lda = lda, .n = n, .k = to - from};
-    forTiles(0, vecsFor(n), [&]<int V>(int vec) { product.subtractRows<V>(vec * kLanes); });
+    forTiles<kTileVecsOfProduct>(0, vecsFor(n),
+                                 [&]<int V>(int vec) HWY_ATTR { product.subtractRows<V>(vec * kLanes); });
   }
 }
 
-void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, int ldh) {
+void addProductOf(const double* jacobian, int rows, int cols, double* h, int ldh) {
   assert(ldh % kLanes == 0 && ldh >= cols);
   int row = 0;
   for (; row + 6 <= rows; row += 6) addProduct<6>(jacobian + row, rows, cols, h, ldh);
@@ -244,4 +252,27 @@ void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, i
   for (; row < rows; ++row) addProduct<1>(jacobian + row, rows, cols, h, ldh);
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(factorize);
+HWY_EXPORT(subtractProduct);
+HWY_EXPORT(addProductOf);
+
+double factorizePanel(const Panel& panel, std::vector<int>& singular) {
+  return MOTORCADE_KERNEL(factorize)(panel, singular);
+}
+
+void subtractOuterProduct(double* c, int ldc, const double* a, int lda, int n, int k) {
+  MOTORCADE_KERNEL(subtractProduct)(c, ldc, a, lda, n, k);
+}
+
+void addJacobianProduct(const double* jacobian, int rows, int cols, double* h, int ldh) {
+  MOTORCADE_KERNEL(addProductOf)(jacobian, rows, cols, h, ldh);
+}
+
 }  // namespace motorcade
+#endif

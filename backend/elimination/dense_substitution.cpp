@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "backend/elimination/dense_substitution.cpp"
+#include <hwy/foreach_target.h>
+
 #include "backend/graph/lanes.hpp"
 
-namespace motorcade {
-
-using namespace lanes;
-
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 /// sums[c] += m(:, c)^T x over n rows.
@@ -97,28 +100,51 @@ void forwardSubstituteRows(const Panel& panel, double* y, int stride) {
 
 }  // namespace
 
-void backSubstitute(const Panel& panel, const double* x_separator, double* x_frontal) {
+void solveBack(const Panel& panel, const double* x_separator, double* x_frontal) {
   // The odd columns come last, that is first in the panel, so that the solved scalars are whole vectors.
   for (int end = panel.columns; end > 0; end -= kLanes) {
     withConstant<kLanes>(std::min(end, kLanes),
-                         [&]<int N>() { backSubstituteColumns<N>(panel, end - N, x_separator, x_frontal); });
+                         [&]<int N>() HWY_ATTR { backSubstituteColumns<N>(panel, end - N, x_separator, x_frontal); });
   }
 }
 
-void forwardSubstitute(const Panel& panel, std::span<const int> singular, double* g) {
+void solveForward(const Panel& panel, std::span<const int> singular, double* g) {
   for (int first = 0; first < panel.columns; first += kLanes) {
     withConstant<kLanes>(std::min(panel.columns - first, kLanes),
-                         [&]<int N>() { forwardSubstituteColumns<N>(panel, first, g); });
+                         [&]<int N>() HWY_ATTR { forwardSubstituteColumns<N>(panel, first, g); });
   }
   for (const int k : singular) g[k] = 0;  // it has touched nothing: its column is zero below the pivot
   for (int k = 0; k < panel.columns; ++k) panel.data[panel.rows - 1 + k * panel.ld] = g[k];
 }
 
-void forwardSubstitute(const Panel& panel, double* y, int stride) {
+void solveForwardRows(const Panel& panel, double* y, int stride) {
   constexpr int kMost = 4;
   for (int first = 0; first < stride; first += kMost * kLanes)
     withConstant<kMost>(std::min((stride - first) / kLanes, kMost),
-                        [&]<int N>() { forwardSubstituteRows<N>(panel, y + first, stride); });
+                        [&]<int N>() HWY_ATTR { forwardSubstituteRows<N>(panel, y + first, stride); });
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(solveBack);
+HWY_EXPORT(solveForward);
+HWY_EXPORT(solveForwardRows);
+
+void backSubstitute(const Panel& panel, const double* x_separator, double* x_frontal) {
+  MOTORCADE_KERNEL(solveBack)(panel, x_separator, x_frontal);
+}
+
+void forwardSubstitute(const Panel& panel, std::span<const int> singular, double* g) {
+  MOTORCADE_KERNEL(solveForward)(panel, singular, g);
+}
+
+void forwardSubstitute(const Panel& panel, double* y, int stride) {
+  MOTORCADE_KERNEL(solveForwardRows)(panel, y, stride);
 }
 
 }  // namespace motorcade
+#endif

@@ -1,40 +1,63 @@
-#pragma once
+/// Vectors of four doubles for the kernels of this folder, which alone include this (core/lanes.hpp).
+#if defined(MOTORCADE_GRAPH_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTORCADE_GRAPH_LANES
+#undef MOTORCADE_GRAPH_LANES
+#else
+#define MOTORCADE_GRAPH_LANES
+#endif
 
-/// Vectors of four doubles for the kernels, which alone include this. GCC's vector extension turns them into the
-/// processor's instructions.
-namespace motorcade::lanes {
+#include "core/lanes.hpp"
 
-using Vec = double __attribute__((vector_size(32)));
-// NOLINTNEXTLINE(modernize-use-using): only a typedef may lower an alignment
-typedef double UnalignedVec __attribute__((vector_size(32), may_alias, aligned(8)));
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 
-/// Numbers in a vector of AVX.
+using Vec = Doubles;
 constexpr int kLanes = 4;
 
-inline Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
-inline void store(double* to, Vec value) { *reinterpret_cast<UnalignedVec*>(to) = value; }
-inline Vec broadcast(double value) { return Vec{value, value, value, value}; }
-inline double sum(Vec v) { return (v[0] + v[2]) + (v[1] + v[3]); }
+HWY_INLINE Vec broadcast(double value) { return value; }
+HWY_INLINE double sum(const Vec& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
+HWY_INLINE Vec four(double a, double b, double c, double d) {
+  Vec v;
+#if HWY_TARGET == HWY_AVX2
+  v.part[0] = Vec::Part{a, b, c, d};
+#else
+  v.part[0] = Vec::Part{a, b}, v.part[1] = Vec::Part{c, d};
+#endif
+  return v;
+}
 
 /// The rows of a 4 x 4 matrix become its columns.
-inline void transpose(Vec& a, Vec& b, Vec& c, Vec& d) {
-  const Vec even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Vec even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
-  b = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
-  c = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
-  d = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+HWY_INLINE void transpose(Vec& a, Vec& b, Vec& c, Vec& d) {
+#if HWY_TARGET == HWY_AVX2
+  const auto even = [](const Vec& x, const Vec& y)
+                        HWY_ATTR { return __builtin_shufflevector(x.part[0], y.part[0], 0, 4, 2, 6); };
+  const auto odd = [](const Vec& x, const Vec& y)
+                       HWY_ATTR { return __builtin_shufflevector(x.part[0], y.part[0], 1, 5, 3, 7); };
+  const Vec::Part even_ab = even(a, b), odd_ab = odd(a, b), even_cd = even(c, d), odd_cd = odd(c, d);
+  a.part[0] = __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5);
+  b.part[0] = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5);
+  c.part[0] = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
+  d.part[0] = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
+#else
+  const Vec rows[4]{a, b, c, d};
+  const auto pair = [&rows](int row, int column) HWY_ATTR {
+    const Vec::Part x = rows[row].part[column / 2], y = rows[row + 1].part[column / 2];
+    return column % 2 == 0 ? __builtin_shufflevector(x, y, 0, 2) : __builtin_shufflevector(x, y, 1, 3);
+  };
+  a.part[0] = pair(0, 0), a.part[1] = pair(2, 0), b.part[0] = pair(0, 1), b.part[1] = pair(2, 1);
+  c.part[0] = pair(0, 2), c.part[1] = pair(2, 2), d.part[0] = pair(0, 3), d.part[1] = pair(2, 3);
+#endif
 }
 
 /// The first `count` of four numbers and zeros; reads nothing past them.
-inline Vec loadFirst(const double* from, int count) {
+HWY_INLINE Vec loadFirst(const double* from, int count) {
   switch (count) {
     case 1:
-      return Vec{from[0], 0, 0, 0};
+      return four(from[0], 0, 0, 0);
     case 2:
-      return Vec{from[0], from[1], 0, 0};
+      return four(from[0], from[1], 0, 0);
     case 3:
-      return Vec{from[0], from[1], from[2], 0};
+      return four(from[0], from[1], from[2], 0);
     default:
       return load(from);
   }
@@ -49,4 +72,6 @@ template <int kMax, class F>
   f.template operator()<kMax>();
 }
 
-}  // namespace motorcade::lanes
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

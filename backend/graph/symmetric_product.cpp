@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "backend/graph/symmetric_product.cpp"
+#include <hwy/foreach_target.h>
+
 #include "backend/graph/lanes.hpp"
 
-namespace motorcade {
-
-using namespace lanes;
-
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 /// N columns of a symmetric matrix from `first` on: theirs and, transposed, the rows that mirror them.
@@ -32,7 +35,7 @@ void addSymmetricColumns(const PackedTriangle& a, int first, const double* x, do
   for (int c = 0; c < N; ++c) {
     const double* const column = columns[c];
     double sum_c = column[first + c] * x[first + c] + sum(partial[c]);
-    const auto mirror = [&](int row) {
+    const auto mirror = [&](int row) HWY_ATTR {
       y[row] += column[row] * x[first + c];
       sum_c += column[row] * x[row];
     };
@@ -44,9 +47,21 @@ void addSymmetricColumns(const PackedTriangle& a, int first, const double* x, do
 
 }  // namespace
 
-void addSymmetricProduct(const PackedTriangle& a, const double* x, double* y) {
+void addProduct(const PackedTriangle& a, const double* x, double* y) {
   for (int first = 0; first < a.size; first += kLanes)
-    withConstant<kLanes>(std::min(a.size - first, kLanes), [&]<int N>() { addSymmetricColumns<N>(a, first, x, y); });
+    withConstant<kLanes>(std::min(a.size - first, kLanes),
+                         [&]<int N>() HWY_ATTR { addSymmetricColumns<N>(a, first, x, y); });
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(addProduct);
+
+void addSymmetricProduct(const PackedTriangle& a, const double* x, double* y) { MOTORCADE_KERNEL(addProduct)(a, x, y); }
+
 }  // namespace motorcade
+#endif

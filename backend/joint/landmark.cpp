@@ -4,20 +4,19 @@
 #include <array>
 #include <cmath>
 
-#include "backend/graph/lanes.hpp"
-#include "backend/joint/row_products.hpp"
 #include "core/decompositions.hpp"
+#include "core/instruction_set.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "backend/joint/landmark.cpp"
+#include <hwy/foreach_target.h>
+
+#include "backend/joint/row_products.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
-using lanes::broadcast, lanes::kLanes, lanes::Vec;
-
-constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
-constexpr double kLeastSharedSigma_px = 1e-3;
-constexpr int kMostSteps = 3;
-constexpr int kPoint = 3;            // unknowns that the views of a landmark tell
-constexpr double kFittedCost = 0.1;  // what a step would take off the squared residuals when a landmark is fitted
+constexpr int kPoseNumbers = 12;
 
 /// Four vectors.
 struct Lanes3 {
@@ -34,15 +33,15 @@ class ViewLanes {
   ViewLanes(std::span<const LandmarkView> views, const double* poses, std::size_t stride) {
     const LandmarkView* of[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i) of[i] = &views[std::min(i, views.size() - 1)];
-    const auto lanes = [&](const auto& value) {
-      return Vec{value(*of[0]), value(*of[1]), value(*of[2]), value(*of[3])};
-    };
-    for (int k = 0; k < 12; ++k) pose_[k] = lanes([&](const LandmarkView& v) { return poses[k * stride + v.frame]; });
-    uvd_px = {lanes([](auto& v) { return v.uvd_px[0]; }), lanes([](auto& v) { return v.uvd_px[1]; }),
-              lanes([](auto& v) { return v.uvd_px[2]; })};
-    inverse_sigma = {lanes([](auto& v) { return v.inverse_sigma[0]; }),
-                     lanes([](auto& v) { return v.inverse_sigma[1]; }),
-                     lanes([](auto& v) { return v.inverse_sigma[2]; })};
+    const auto lanes = [&](const auto& value)
+                           HWY_ATTR { return four(value(*of[0]), value(*of[1]), value(*of[2]), value(*of[3])); };
+    for (int k = 0; k < kPoseNumbers; ++k)
+      pose_[k] = lanes([&](const LandmarkView& v) HWY_ATTR { return poses[k * stride + v.frame]; });
+    uvd_px = {lanes([](auto& v) HWY_ATTR { return v.uvd_px[0]; }), lanes([](auto& v) HWY_ATTR { return v.uvd_px[1]; }),
+              lanes([](auto& v) HWY_ATTR { return v.uvd_px[2]; })};
+    inverse_sigma = {lanes([](auto& v) HWY_ATTR { return v.inverse_sigma[0]; }),
+                     lanes([](auto& v) HWY_ATTR { return v.inverse_sigma[1]; }),
+                     lanes([](auto& v) HWY_ATTR { return v.inverse_sigma[2]; })};
   }
 
   Lanes3 rotated(const Eigen::Vector3d& v) const {
@@ -64,29 +63,29 @@ class ViewLanes {
   Lanes3 uvd_px, inverse_sigma;
 
  private:
-  Vec pose_[12];  // the rotation column by column, and the translation
+  Vec pose_[kPoseNumbers];  // the rotation column by column, and the translation
 };
 
 Vec rootWeights(const LandmarkNoise& noise, const Vec& squared_norm) {
   Vec root;
   for (int i = 0; i < kLanes; ++i)
-    root[i] = std::sqrt(robustWeight(noise.loss, std::sqrt(squared_norm[i]), noise.loss_scale));
+    root.set(i, std::sqrt(robustWeight(noise.loss, std::sqrt(squared_norm[i]), noise.loss_scale)));
   return root;
 }
 
 /// Where in a linear model four contiguous numbers are.
 auto bRow(int row) {
-  return [=](LinearView& linear) { return linear.B.data() + 4 * row; };
+  return [=](LinearView& linear) HWY_ATTR { return linear.B.data() + 4 * row; };
 }
 auto jRow(int row, int column = 0) {
-  return [=](LinearView& linear) { return linear.J.data() + 8 * row + column; };
+  return [=](LinearView& linear) HWY_ATTR { return linear.J.data() + 8 * row + column; };
 }
 
 /// Four numbers of each of four models.
 template <class Place>
-void store(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
-  lanes::transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
-  for (int i = 0; i < kLanes; ++i) lanes::store(place(linear[i]), numbers[i]);
+void storeInto(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
+  transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
+  for (int i = 0; i < kLanes; ++i) HWY_NAMESPACE::store(place(linear[i]), numbers[i]);
 }
 
 /// How a number that changes with a point seen from the camera changes with steps of the frame's pose.
@@ -113,19 +112,76 @@ class PoseSteps {
 /// A row of J: by the steps of the pose, and what is right of that.
 void storeByPose(const std::array<Lanes3, 2>& by_steps, const std::array<Vec, 2>& rest, LinearView* linear, int row) {
   const auto& [origin, turn] = by_steps;
-  store({origin.x, origin.y, origin.z, turn.x}, linear, jRow(row));
-  store({turn.y, turn.z, rest[0], rest[1]}, linear, jRow(row, 4));
+  storeInto({origin.x, origin.y, origin.z, turn.x}, linear, jRow(row));
+  storeInto({turn.y, turn.z, rest[0], rest[1]}, linear, jRow(row, 4));
 }
 
 /// V += B' B, g += B' r.
 void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d& g) {
-  Vec sum = lanes::load(g.data());
+  Vec sum = load(g.data());
   for (const LinearView& l : views) {
     addOuterProducts(l.B, l.B, V);
-    for (int k = 0; k < 3; ++k) sum += lanes::load(l.B.data() + 4 * k) * broadcast(l.J(k, 7));
+    for (int k = 0; k < 3; ++k) sum += load(l.B.data() + 4 * k) * broadcast(l.J(k, 7));
   }
-  lanes::store(g.data(), sum);
+  store(g.data(), sum);
 }
+
+/// Up to four views in the lanes of vectors; what lanes without a view hold is not used. False where the landmark lies
+/// behind a camera.
+bool linearizeFour(std::span<const LandmarkView> views, LandmarkFit::Linearization& at, LinearView* linear) {
+  const ViewLanes view(views, at.poses.data(), at.poses.size() / kPoseNumbers);
+  const Lanes3 p = view.moved(at.p_body);
+  const StereoCamera& camera = at.camera;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (p.z[static_cast<int>(i)] < StereoCamera::kMinDepth_m) return false;
+  const Vec iz = 1 / p.z, x = p.x * iz, y = p.y * iz, fb = broadcast(camera.fx_px * camera.baseline_m);
+  Lanes3 r{view.uvd_px.x - (camera.fx_px * x + camera.cx_px), view.uvd_px.y - (camera.fy_px * y + camera.cy_px),
+           view.uvd_px.z - fb * iz + at.offset_px};
+  r = r * view.inverse_sigma;
+  const Vec squared_norm = (r.x * r.x + r.y * r.y) + r.z * r.z;
+  const Vec root_weight = rootWeights(at.noise, squared_norm * broadcast(1 / at.variance));
+  for (int i = 0; i < static_cast<int>(views.size()); ++i)
+    at.squares += squared_norm[i] * root_weight[i] * root_weight[i];
+  const Lanes3 whiten{root_weight * view.inverse_sigma.x, root_weight * view.inverse_sigma.y,
+                      root_weight * view.inverse_sigma.z};
+  // J = -whiten d(u, v, d) / d(p_cam) has the rows (ux, 0, uz), (0, vy, vz), (0, 0, dz).
+  const Vec zero{}, ux = -camera.fx_px * (whiten.x * iz), uz = -ux * x, vy = -camera.fy_px * (whiten.y * iz),
+                    vz = -vy * y, dz = fb * (whiten.z * iz) * iz;
+  const Lanes3 d0 = view.rotated(at.G.col(0)), d1 = view.rotated(at.G.col(1)), d2 = view.rotated(at.G.col(2));
+  storeInto({ux * d0.x + uz * d0.z, ux * d1.x + uz * d1.z, ux * d2.x + uz * d2.z, zero}, linear, bRow(0));
+  storeInto({vy * d0.y + vz * d0.z, vy * d1.y + vz * d1.z, vy * d2.y + vz * d2.z, zero}, linear, bRow(1));
+  storeInto({dz * d0.z, dz * d1.z, dz * d2.z, -whiten.z}, linear, bRow(2));
+  const PoseSteps steps(view, at.pose, at.p_body, p);
+  storeByPose(steps({ux, zero, uz}), {zero, root_weight * r.x}, linear, 0);
+  storeByPose(steps({zero, vy, vz}), {zero, root_weight * r.y}, linear, 1);
+  storeByPose(steps({zero, zero, dz}), {whiten.z, root_weight * r.z}, linear, 2);
+  addNormalEquations(std::span(linear, views.size()), at.V, at.gradient);
+  return true;
+}
+
+}  // namespace
+
+bool linearize(std::span<const LandmarkView> views, LandmarkFit::Linearization& at, LinearView* linear) {
+  for (std::size_t i = 0; i < views.size(); i += kLanes)
+    if (!linearizeFour(views.subspan(i, std::min<std::size_t>(kLanes, views.size() - i)), at, linear + i)) return false;
+  return true;
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(linearize);
+
+namespace {
+
+constexpr double kLeastDisparity_px = 0.3;  // a landmark with less is at infinity
+constexpr double kLeastSharedSigma_px = 1e-3;
+constexpr int kMostSteps = 3;
+constexpr int kPoint = 3;            // unknowns that the views of a landmark tell
+constexpr double kFittedCost = 0.1;  // what a step would take off the squared residuals when a landmark is fitted
 
 }  // namespace
 
@@ -142,9 +198,9 @@ LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise,
       T_cam_body_(T_cam_body),
       offset_px_(offset_px),
       stride_(T_cam_body.size()) {
-  poses_.resize(12 * stride_);
+  poses_.resize(HWY_NAMESPACE::kPoseNumbers * stride_);
   for (std::size_t frame = 0; frame < stride_; ++frame)
-    for (int k = 0; k < 12; ++k)
+    for (int k = 0; k < HWY_NAMESPACE::kPoseNumbers; ++k)
       poses_[k * stride_ + frame] =
           k < 9 ? T_cam_body[frame].rotation().data()[k] : T_cam_body[frame].translation()[k - 9];
 }
@@ -184,22 +240,26 @@ std::optional<LandmarkEstimate> LandmarkFit::estimate() const {
 std::optional<KnownLandmark> LandmarkFit::known() const {
   const Vector4d landmark = landmark_ - llt_.solve(gradient_);
   if (!(landmark[2] > kLeastDisparity_px)) return std::nullopt;
-  const Matrix4d root = inverseTransposed(llt_.matrixL());
+  const Matrix4d root = HWY_NAMESPACE::inverseTransposed(llt_.matrixL());
   return KnownLandmark{landmark, root * root.transpose()};
 }
 
 bool LandmarkFit::linearize(std::span<const LandmarkView> views) {
   if (!(landmark_[2] > kLeastDisparity_px)) return false;
   const SE3 T_body_cam = T_cam_body_[newest_frame_].inverse();
-  const Eigen::Vector3d uvd_px = landmark_.head<3>(), p_body = T_body_cam * camera_.triangulate(uvd_px);
-  const Eigen::Matrix3d G = T_body_cam.rotation() * camera_.triangulationJacobian(uvd_px);
+  const Eigen::Vector3d uvd_px = landmark_.head<3>();
   count_ = views.size();
-  linear_.resize((count_ + kLanes - 1) / kLanes * kLanes);
-  V_.setZero();
-  gradient_.setZero();
-  squares_ = 0;
-  for (std::size_t i = 0; i < count_; i += kLanes)
-    if (!linearize(views.subspan(i, std::min<std::size_t>(kLanes, count_ - i)), p_body, G, &linear_[i])) return false;
+  linear_.resize((count_ + HWY_NAMESPACE::kLanes - 1) / HWY_NAMESPACE::kLanes * HWY_NAMESPACE::kLanes);
+  Linearization at{.camera = camera_,
+                   .noise = noise_,
+                   .pose = pose_,
+                   .poses = poses_,
+                   .offset_px = offset_px_ - landmark_[3],
+                   .variance = variance_,
+                   .p_body = T_body_cam * camera_.triangulate(uvd_px),
+                   .G = T_body_cam.rotation() * camera_.triangulationJacobian(uvd_px)};
+  if (!MOTORCADE_KERNEL(linearize)(views, at, linear_.data())) return false;
+  V_ = at.V, gradient_ = at.gradient, squares_ = at.squares;
   if (noise_.variance_freedom > 0) weighByOwnVariance();
   addSharedError(views);
   llt_.compute(V_);
@@ -228,35 +288,5 @@ void LandmarkFit::addSharedError(std::span<const LandmarkView> views) {
   gradient_[3] += information * landmark_[3];
 }
 
-/// View by view in the lanes of vectors; what lanes without a view hold is not used.
-bool LandmarkFit::linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body,
-                            const Eigen::Matrix3d& G, LinearView* linear) {
-  const ViewLanes view(views, poses_.data(), stride_);
-  const Lanes3 p = view.moved(p_body);
-  for (std::size_t i = 0; i < views.size(); ++i)
-    if (p.z[i] < StereoCamera::kMinDepth_m) return false;
-  const Vec iz = 1 / p.z, x = p.x * iz, y = p.y * iz, fb = broadcast(camera_.fx_px * camera_.baseline_m);
-  Lanes3 r{view.uvd_px.x - (camera_.fx_px * x + camera_.cx_px), view.uvd_px.y - (camera_.fy_px * y + camera_.cy_px),
-           view.uvd_px.z - fb * iz + (offset_px_ - landmark_[3])};
-  r = r * view.inverse_sigma;
-  const Vec squared_norm = (r.x * r.x + r.y * r.y) + r.z * r.z;
-  const Vec root_weight = rootWeights(noise_, squared_norm * broadcast(1 / variance_));
-  for (std::size_t i = 0; i < views.size(); ++i) squares_ += squared_norm[i] * root_weight[i] * root_weight[i];
-  const Lanes3 whiten{root_weight * view.inverse_sigma.x, root_weight * view.inverse_sigma.y,
-                      root_weight * view.inverse_sigma.z};
-  // J = -whiten d(u, v, d) / d(p_cam) has the rows (ux, 0, uz), (0, vy, vz), (0, 0, dz).
-  const Vec zero{}, ux = -camera_.fx_px * (whiten.x * iz), uz = -ux * x, vy = -camera_.fy_px * (whiten.y * iz),
-                    vz = -vy * y, dz = fb * (whiten.z * iz) * iz;
-  const Lanes3 d0 = view.rotated(G.col(0)), d1 = view.rotated(G.col(1)), d2 = view.rotated(G.col(2));
-  store({ux * d0.x + uz * d0.z, ux * d1.x + uz * d1.z, ux * d2.x + uz * d2.z, zero}, linear, bRow(0));
-  store({vy * d0.y + vz * d0.z, vy * d1.y + vz * d1.z, vy * d2.y + vz * d2.z, zero}, linear, bRow(1));
-  store({dz * d0.z, dz * d1.z, dz * d2.z, -whiten.z}, linear, bRow(2));
-  const PoseSteps steps(view, pose_, p_body, p);
-  storeByPose(steps({ux, zero, uz}), {zero, root_weight * r.x}, linear, 0);
-  storeByPose(steps({zero, vy, vz}), {zero, root_weight * r.y}, linear, 1);
-  storeByPose(steps({zero, zero, dz}), {whiten.z, root_weight * r.z}, linear, 2);
-  addNormalEquations(std::span(linear, views.size()), V_, gradient_);
-  return true;
-}
-
 }  // namespace motorcade
+#endif

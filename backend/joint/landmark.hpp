@@ -93,12 +93,23 @@ class LandmarkFit {
   double sharedError_px() const { return landmark_[3]; }
   double sharedErrorSigma_px() const { return shared_sigma_px_; }
 
+  /// Where views are linearized, and the sums over them.
+  struct Linearization {
+    const StereoCamera& camera;
+    const LandmarkNoise& noise;
+    FramePose pose;
+    std::span<const double> poses;  // T_cam_body of all frames, number by number, so that four are loaded at a time
+    double offset_px, variance;
+    Eigen::Vector3d p_body;
+    Eigen::Matrix3d G;  // d(p_body) / d(u, v, d of the newest view)
+    Matrix4d V = Matrix4d::Zero();
+    Vector4d gradient = Vector4d::Zero();
+    double squares = 0;  // weighted residuals
+  };
+
  private:
   bool beginFrom(const LandmarkEstimate& before);
   bool linearize(std::span<const LandmarkView> views);
-  /// Linearizes up to four views. `G` = d(p_body) / d(u, v, d of the newest view).
-  bool linearize(std::span<const LandmarkView> views, const Eigen::Vector3d& p_body, const Eigen::Matrix3d& G,
-                 LinearView* linear);
   void weighByOwnVariance();
   void addSharedError(std::span<const LandmarkView> views);
 
@@ -107,7 +118,7 @@ class LandmarkFit {
   FramePose pose_;
   std::span<const SE3> T_cam_body_;
   double offset_px_;
-  std::vector<double> poses_;  // T_cam_body of all frames, number by number, so that four are loaded at a time
+  std::vector<double> poses_;
   std::size_t stride_ = 0;
   int newest_frame_ = 0;
   Vector4d landmark_, gradient_;

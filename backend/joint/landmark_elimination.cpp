@@ -6,9 +6,15 @@
 #include <Eigen/Cholesky>
 
 #include "backend/elimination/dense_kernels.hpp"
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "backend/joint/landmark_elimination.cpp"
+#include <hwy/foreach_target.h>
+
 #include "backend/joint/row_products.hpp"
 
-namespace motorcade {
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kLandmark = 4;               // unknowns of a landmark
@@ -140,15 +146,14 @@ Eigen::MatrixXd eliminateShakes(const Eigen::MatrixXd& system, double sigma_px, 
 std::vector<int> byFirstFrame(const LandmarkViews& landmarks) {
   std::vector<int> order(landmarks.count());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](int j) { return landmarks.of(j).front().frame; });
+  std::ranges::stable_sort(order, {}, [&](int j) HWY_ATTR { return landmarks.of(j).front().frame; });
   return order;
 }
 
 }  // namespace
 
-EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
-                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
-                                       double offset_px) {
+EliminatedLandmarks eliminate(const StereoCamera& camera, const LandmarkNoise& noise, const LandmarkViews& landmarks,
+                              FramePose pose, std::vector<SE3> T_cam_body, double offset_px) {
   EliminatedLandmarks result{.pose = pose,
                              .T_cam_body = std::move(T_cam_body),
                              .offset_px = offset_px,
@@ -170,4 +175,19 @@ EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const Landmar
   return result;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(eliminate);
+
+EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
+                                       const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,
+                                       double offset_px) {
+  return MOTORCADE_KERNEL(eliminate)(camera, noise, landmarks, pose, std::move(T_cam_body), offset_px);
+}
+
 }  // namespace motorcade
+#endif

@@ -9,18 +9,23 @@
 #include <tuple>
 #include <utility>
 
-#include "frontend/image/float_lanes.hpp"
+#include "core/instruction_set.hpp"
 #include "frontend/image/grain.hpp"
 #include "frontend/parallel_items.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/features/corner_detector.cpp"
+#include <hwy/foreach_target.h>
+
+#include "core/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kHalfWindow_px = 3;  // second moments are summed over 7x7 pixels
 constexpr int kWindowRows = 2 * kHalfWindow_px + 1, kWindowPixels = kWindowRows * kWindowRows;
 
-constexpr int kCell_px = CornerDetector::kCell_px, kMinDistance_px = CornerDetector::kMinDistance_px;
-constexpr int kMaxPerCell = 6;
+constexpr int kMinDistance_px = CornerDetector::kMinDistance_px;
 /// Rows and columns along the border without corners: responses reach as far as window, smoothing and distance.
 constexpr int kBorder_px = kHalfWindow_px + 2 + kMinDistance_px;
 /// Least ratio of a corner's score to the standard deviation of the pixel noise that would look as rough as the
@@ -122,17 +127,15 @@ void smallerEigenvalues(const ColumnMoments& moments, int first, int last, float
 /// True for the greatest value within the minimum distance; of equal ones for the first in reading order.
 bool isMaximum(const RowRing<float>& response, int x, int y) {
   // Two vectors, one lane apart, cover the columns; those of the value's own row lie on either side of it.
-  static_assert(2 * kMinDistance_px == kFloatLanes);
+  static_assert(kMinDistance_px == 4);
   const float* here = response.row(y) + x;
-  const Floats value = allFloats(*here), own = loadFloats(here - kMinDistance_px);
-  constexpr FloatMask kLeft{-1, -1, -1, -1, 0, 0, 0, 0};
-  const Floats right_end = loadFloats(here - kMinDistance_px + 1);
-  if (anyOf(FloatMask(own >= value) & kLeft) || anyOf(FloatMask(right_end > value) & ~kLeft)) return false;
+  constexpr unsigned kLeft = 0b1111;
+  const Floats value = *here, own = load(here - kMinDistance_px), right_end = load(here - kMinDistance_px + 1);
+  if ((bitsOf(own >= value) & kLeft) != 0 || (bitsOf(right_end > value) & ~kLeft) != 0) return false;
   for (int dy = 1; dy <= kMinDistance_px; ++dy) {
     const float *above = response.row(y - dy) + x - kMinDistance_px,
                 *below = response.row(y + dy) + x - kMinDistance_px;
-    if (anyOf((loadFloats(above) >= value) | (loadFloats(above + 1) >= value) | (loadFloats(below) > value) |
-              (loadFloats(below + 1) > value)))
+    if (anyOf((load(above) >= value) | (load(above + 1) >= value) | (load(below) > value) | (load(below + 1) > value)))
       return false;
   }
   return true;
@@ -163,23 +166,14 @@ int nextMark(const std::vector<std::uint8_t>& marks, int x) {
   return x;
 }
 
-struct Candidate {
-  int cell;
-  Corner corner;
-};
-
-bool strongerInCell(const Candidate& a, const Candidate& b) {
-  return std::tuple(a.cell, -a.corner.score, a.corner.v_px, a.corner.u_px) <
-         std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
-}
+}  // namespace
 
 /// Local maxima of the rows from `first_center` up to `end_center`, in reading order.
-std::vector<Candidate> findCandidates(const Image& image, int first_center, int end_center, double min_score) {
+std::vector<Corner> findMaxima(const Image& image, int first_center, int end_center, double min_score) {
   const int width = image.width();
-  std::vector<Candidate> candidates;
+  std::vector<Corner> maxima;
   constexpr double kMomentScale = Gradients::kScale * Gradients::kScale * kWindowPixels;
   const auto threshold = static_cast<float>(min_score * min_score * kMomentScale);
-  const int columns = (width + kCell_px - 1) / kCell_px;
   Gradients gradients(image);
   ColumnMoments moments(width);
   RowRing<float> response(2 * kMinDistance_px + 1, width);
@@ -199,11 +193,31 @@ std::vector<Candidate> findCandidates(const Image& image, int first_center, int 
       if (x >= width - kBorder_px || !isMaximum(response, x, center)) continue;
       const auto score = static_cast<float>(std::sqrt(response.row(center)[x] / kMomentScale));
       if (score < kMinScoreOverGrain * grainAround(image, x, center)) continue;
-      candidates.push_back(
-          {center / kCell_px * columns + x / kCell_px, {static_cast<float>(x), static_cast<float>(center), score}});
+      maxima.push_back({static_cast<float>(x), static_cast<float>(center), score});
     }
   }
-  return candidates;
+  return maxima;
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+namespace {
+
+HWY_EXPORT(findMaxima);
+
+constexpr int kCell_px = CornerDetector::kCell_px, kMaxPerCell = 6, kBorder_px = HWY_NAMESPACE::kBorder_px;
+
+struct Candidate {
+  int cell;
+  Corner corner;
+};
+
+bool strongerInCell(const Candidate& a, const Candidate& b) {
+  return std::tuple(a.cell, -a.corner.score, a.corner.v_px, a.corner.u_px) <
+         std::tuple(b.cell, -b.corner.score, b.corner.v_px, b.corner.u_px);
 }
 
 /// Local maxima of the whole image, in reading order. Bands of rows are searched in parallel, one for each thread, as
@@ -214,11 +228,17 @@ std::vector<Candidate> findCandidates(const Image& image, double min_score) {
   const int rows = image.height() - 2 * kBorder_px;
   if (rows <= 0 || image.width() <= 2 * kBorder_px) return {};
   const auto startOf = [&](std::size_t band) { return kBorder_px + rows * static_cast<int>(band) / count; };
-  std::vector<std::vector<Candidate>> bands(count);
+  std::vector<std::vector<Corner>> bands(count);
+  const auto find = MOTORCADE_KERNEL(findMaxima);
   forEachItem(
-      bands.size(), [&](std::size_t i) { bands[i] = findCandidates(image, startOf(i), startOf(i + 1), min_score); }, 1);
-  std::vector<Candidate> candidates = std::move(bands.front());
-  for (std::size_t i = 1; i < bands.size(); ++i) candidates.insert(candidates.end(), bands[i].begin(), bands[i].end());
+      bands.size(), [&](std::size_t i) { bands[i] = find(image, startOf(i), startOf(i + 1), min_score); }, 1);
+  const int columns = (image.width() + kCell_px - 1) / kCell_px;
+  std::vector<Candidate> candidates;
+  for (const auto& band : bands)
+    for (const Corner& corner : band) {
+      const int column = static_cast<int>(corner.u_px) / kCell_px, row = static_cast<int>(corner.v_px) / kCell_px;
+      candidates.push_back({row * columns + column, corner});
+    }
   return candidates;
 }
 
@@ -268,3 +288,4 @@ std::vector<Parameter> parametersOf(CornerDetector::Params& params) {
 }
 
 }  // namespace motorcade
+#endif

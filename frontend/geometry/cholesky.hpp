@@ -6,8 +6,6 @@
 
 #include <Eigen/Core>
 
-#include "frontend/geometry/double_lanes.hpp"
-
 namespace motorcade {
 
 /// Factors H = L D L' of a small positive definite matrix; only the lower triangle is read. All loops have a fixed
@@ -61,13 +59,14 @@ class Cholesky {
   }
 
  private:
-  static constexpr int kLanes = static_cast<int>(kDoubleLanes), kParts = (N + kLanes - 1) / kLanes;
+  using Two = double __attribute__((vector_size(16)));
+  static constexpr int kLanes = 2, kParts = (N + kLanes - 1) / kLanes;
 
   /// Row of several right-hand sides.
   struct Row {
-    std::array<Doubles, kParts> parts;
+    std::array<Two, kParts> parts;
     Row& operator*=(double factor) {
-      for (Doubles& part : parts) part *= factor;
+      for (Two& part : parts) part *= factor;
       return *this;
     }
     Row& operator-=(const Row& other) {

@@ -4,11 +4,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "core/instruction_set.hpp"
 #include "frontend/geometry/cholesky.hpp"
+
+#define HWY_TARGET_INCLUDE "frontend/geometry/stereo_pose.cpp"
+#include <hwy/foreach_target.h>
+
 #include "frontend/geometry/stereo_view.hpp"
 
-namespace motorcade {
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -17,13 +24,12 @@ constexpr int kIterationsWithOutliers = 2;
 constexpr int kMinObservations = 3;  // that determine the six degrees of freedom with some redundancy
 constexpr double kMaxStep = 100;     // norm of an increment (m, rad) beyond which the fit diverges
 
-void setLane(PoseObservations::Block& block, std::size_t lane, const PoseObservation& o) {
-  setLane(block.p_ref, lane, o.p_ref);
-  setLane(block.uvd_px, lane, o.uvd_px);
-  setLane(block.variance_px2, lane, o.sigma_px.cwiseAbs2());
-  SymmetricDoubles3x3& C = block.covariance_ref;
-  C.xx[lane] = o.covariance_ref(0, 0), C.xy[lane] = o.covariance_ref(0, 1), C.xz[lane] = o.covariance_ref(0, 2);
-  C.yy[lane] = o.covariance_ref(1, 1), C.yz[lane] = o.covariance_ref(1, 2), C.zz[lane] = o.covariance_ref(2, 2);
+Doubles3 load3(const std::array<PoseObservations::Block::Four, 3>& numbers) {
+  return {load(numbers[0].data()), load(numbers[1].data()), load(numbers[2].data())};
+}
+SymmetricDoubles3x3 loadSymmetric(const std::array<PoseObservations::Block::Four, 6>& numbers) {
+  return {load(numbers[0].data()), load(numbers[1].data()), load(numbers[2].data()),
+          load(numbers[3].data()), load(numbers[4].data()), load(numbers[5].data())};
 }
 
 /// A pose, the same in all lanes.
@@ -41,19 +47,21 @@ struct LinearizedBlock {
   /// Infinite where a point is so far away that rounding leaves no covariance.
   Doubles chi2() const {
     const Doubles sum = dot(residual_px, weighted_residual);
-    return sum >= Doubles{} ? sum : allDoubles(kInfinity);
+    return choose(sum >= 0.0, sum, kInfinity);
   }
 };
 
 LinearizedBlock linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
   LinearizedBlock l;
-  l.view = viewPoints(camera, T_cam_ref.R, T_cam_ref.t_m, o.p_ref);
+  l.view = viewPoints(camera, T_cam_ref.R, T_cam_ref.t_m, load3(o.p_ref));
   const Doubles3x3& J = l.view.J;
+  const SymmetricDoubles3x3 covariance_ref = loadSymmetric(o.covariance_ref);
+  const Doubles3 variance_px2 = load3(o.variance_px2);
   SymmetricDoubles3x3 S =
-      symmetricTimesTranspose({o.covariance_ref * J.x, o.covariance_ref * J.y, o.covariance_ref * J.z}, J);
-  S.xx += o.variance_px2.x, S.yy += o.variance_px2.y, S.zz += o.variance_px2.z;
+      symmetricTimesTranspose({covariance_ref * J.x, covariance_ref * J.y, covariance_ref * J.z}, J);
+  S.xx += variance_px2.x, S.yy += variance_px2.y, S.zz += variance_px2.z;
   l.information = inverse(S);
-  l.residual_px = o.uvd_px - l.view.uvd_px;
+  l.residual_px = load3(o.uvd_px) - l.view.uvd_px;
   l.weighted_residual = l.information * l.residual_px;
   return l;
 }
@@ -74,10 +82,11 @@ struct LaneEquations {
 
   void add(const PoseObservations::Block& o, const LinearizedBlock& l, double gate, double huber_sigmas) {
     const Doubles known_px = l.chi2();
-    const auto is_in = known_px < allDoubles(gate);
-    const Doubles counts = is_in ? o.count * l.view.ahead : Doubles{}, chi2_px = is_in ? known_px : Doubles{};
+    const auto is_in = known_px < gate;
+    const Doubles counts = choose(is_in, load(o.count.data()) * l.view.ahead, 0.0),
+                  chi2_px = choose(is_in, known_px, 0.0);
     // What is out may be infinite, and infinite times 0 is no number.
-    const auto orNone = [&](const Doubles& value) { return is_in ? value : Doubles{}; };
+    const auto orNone = [&](const Doubles& value) HWY_ATTR { return choose(is_in, value, 0.0); };
     const SymmetricDoubles3x3 information{.xx = orNone(l.information.xx),
                                           .xy = orNone(l.information.xy),
                                           .xz = orNone(l.information.xz),
@@ -89,7 +98,8 @@ struct LaneEquations {
     const Doubles weight = huberLoss(chi2_px, huber_sigmas).weight * counts;
     const Doubles3x3& J_t = l.view.J;
     // The rows of -J_t hat(p_ref).
-    const Doubles3x3 J_r{cross(o.p_ref, J_t.x), cross(o.p_ref, J_t.y), cross(o.p_ref, J_t.z)};
+    const Doubles3 p_ref = load3(o.p_ref);
+    const Doubles3x3 J_r{cross(p_ref, J_t.x), cross(p_ref, J_t.y), cross(p_ref, J_t.z)};
     const Doubles3x3 W_t = weight * (information * J_t), W_r = weight * (information * J_r);
     const Doubles3 r = weight * weighted_residual;
     H_tt += symmetricTransposeTimes(J_t, W_t);
@@ -130,18 +140,8 @@ NormalEquations accumulate(const StereoCamera& camera, const PoseObservations& o
 
 }  // namespace
 
-PoseObservations::PoseObservations(std::span<const PoseObservation> observations) : size_(observations.size()) {
-  blocks_.resize((size_ + kDoubleLanes - 1) / kDoubleLanes);
-  for (std::size_t i = 0; i < blocks_.size() * kDoubleLanes; ++i) {
-    Block& block = blocks_[i / kDoubleLanes];
-    const std::size_t lane = i % kDoubleLanes;
-    setLane(block, lane, observations[i < size_ ? i : i - lane]);
-    block.count[lane] = i < size_ ? 1 : 0;
-  }
-}
-
-std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations,
-                               const SE3& initial_T_cam_ref, const PoseFitParams& params, const PosePrior* prior) {
+std::optional<PoseFit> fit(const StereoCamera& camera, const PoseObservations& observations,
+                           const SE3& initial_T_cam_ref, const PoseFitParams& params, const PosePrior* prior) {
   SE3 T = initial_T_cam_ref;
   NormalEquations n;
   for (int iteration = 0; iteration < params.max_iterations; ++iteration) {
@@ -155,39 +155,81 @@ std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservation
     T = T * SE3::exp(step);
     if (iteration >= kIterationsWithOutliers && step.norm() < params.min_step) break;
   }
-  PoseFit fit{.T_cam_ref = T.normalized(), .covariance = Cholesky<6>(n.H).inverse()};
-  if (n.inliers >= kMinObservations) fit.inlier_chi2_per_dof = n.inlier_chi2 / (3.0 * n.inliers - 6.0);
-  return fit;
+  PoseFit result{.T_cam_ref = T.normalized(), .covariance = Cholesky<6>(n.H).inverse()};
+  if (n.inliers >= kMinObservations) result.inlier_chi2_per_dof = n.inlier_chi2 / (3.0 * n.inliers - 6.0);
+  return result;
 }
 
-std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref) {
+std::vector<double> chi2Of(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref) {
   const PoseLanes pose(T_cam_ref);
   std::vector<double> chi2;
   chi2.reserve(observations.blocks().size() * kDoubleLanes);
   for (const auto& o : observations.blocks()) {
     const LinearizedBlock l = linearize(camera, o, pose);
     const Doubles all = l.chi2();
-    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane)
+    for (int lane = 0; lane < static_cast<int>(kDoubleLanes); ++lane)
       chi2.push_back(l.view.ahead[lane] > 0 ? all[lane] : kInfinity);
   }
   chi2.resize(observations.size());
   return chi2;
 }
 
-double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
-                 const PoseScoring& scoring, double bound) {
+double score(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
+             const PoseScoring& scoring, double bound) {
   const PoseLanes pose(T_cam_ref);
-  const Doubles most = allDoubles(scoring.max_chi2);
+  const Doubles most = scoring.max_chi2;
   double sum = 0;
   std::size_t next = 0;
   for (const auto& o : observations.blocks()) {
     const LinearizedBlock l = linearize(camera, o, pose);
-    const Doubles chi2 = l.chi2(), counted = l.view.ahead > 0 && chi2 < most ? chi2 : most;
+    const Doubles chi2 = l.chi2(), counted = choose((l.view.ahead > 0.0) & (chi2 < most), chi2, most);
     const std::size_t end = std::min(next + kDoubleLanes, observations.size());
-    for (std::size_t lane = 0; next < end; ++lane, ++next) sum += scoring.weights[next] * counted[lane];
+    for (int lane = 0; next < end; ++lane, ++next) sum += scoring.weights[next] * counted[lane];
     if (sum >= bound) break;  // it only grows
   }
   return sum;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(fit);
+HWY_EXPORT(chi2Of);
+HWY_EXPORT(score);
+
+PoseObservations::PoseObservations(std::span<const PoseObservation> observations) : size_(observations.size()) {
+  constexpr std::size_t kLanes = std::tuple_size_v<Block::Four>;
+  blocks_.resize((size_ + kLanes - 1) / kLanes);
+  for (std::size_t i = 0; i < blocks_.size() * kLanes; ++i) {
+    Block& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
+    const PoseObservation& o = observations[i < size_ ? i : i - lane];
+    for (int row = 0, entry = 0; row < 3; ++row) {
+      block.p_ref[row][lane] = o.p_ref[row];
+      block.uvd_px[row][lane] = o.uvd_px[row];
+      block.variance_px2[row][lane] = o.sigma_px[row] * o.sigma_px[row];
+      for (int column = row; column < 3; ++column) block.covariance_ref[entry++][lane] = o.covariance_ref(row, column);
+    }
+    block.count[lane] = i < size_ ? 1 : 0;
+  }
+}
+
+std::optional<PoseFit> fitPose(const StereoCamera& camera, const PoseObservations& observations,
+                               const SE3& initial_T_cam_ref, const PoseFitParams& params, const PosePrior* prior) {
+  return MOTORCADE_KERNEL(fit)(camera, observations, initial_T_cam_ref, params, prior);
+}
+
+std::vector<double> poseChi2(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref) {
+  return MOTORCADE_KERNEL(chi2Of)(camera, observations, T_cam_ref);
+}
+
+double poseScore(const StereoCamera& camera, const PoseObservations& observations, const SE3& T_cam_ref,
+                 const PoseScoring& scoring, double bound) {
+  return MOTORCADE_KERNEL(score)(camera, observations, T_cam_ref, scoring, bound);
+}
+
 }  // namespace motorcade
+#endif

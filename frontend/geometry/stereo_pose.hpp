@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,7 +9,6 @@
 
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
-#include "frontend/geometry/double_lanes.hpp"
 
 namespace motorcade {
 
@@ -25,13 +25,13 @@ class PoseObservations {
  public:
   explicit PoseObservations(std::span<const PoseObservation> observations);
 
-  /// Four observations. Copies of the first one fill a block that has fewer. The alignment is stated because sources
-  /// compiled for any processor would align `Doubles` less than the kernels do.
-  struct alignas(sizeof(Doubles)) Block {
-    Doubles3 p_ref;
-    SymmetricDoubles3x3 covariance_ref;
-    Doubles3 uvd_px, variance_px2;
-    Doubles count;  // 1, or 0 for a copy
+  /// Four observations. Copies of the first one fill a block that has fewer.
+  struct Block {
+    using Four = std::array<double, 4>;
+    std::array<Four, 3> p_ref;
+    std::array<Four, 6> covariance_ref;  // upper triangle, row by row
+    std::array<Four, 3> uvd_px, variance_px2;
+    Four count;  // 1, or 0 for a copy
   };
   std::span<const Block> blocks() const { return blocks_; }
   std::size_t size() const { return size_; }

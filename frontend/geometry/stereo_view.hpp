@@ -1,9 +1,15 @@
-#pragma once
+#if defined(MOTORCADE_STEREO_VIEW) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTORCADE_STEREO_VIEW
+#undef MOTORCADE_STEREO_VIEW
+#else
+#define MOTORCADE_STEREO_VIEW
+#endif
 
 #include "core/stereo_camera.hpp"
-#include "frontend/geometry/double_lanes.hpp"
+#include "frontend/geometry/lane_algebra.hpp"
 
-namespace motorcade {
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 
 /// Stereo views of four points, each known in its own reference frame.
 struct StereoViews {
@@ -17,12 +23,12 @@ inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_ca
                               const Doubles3& p_ref_m) {
   const Doubles3 p = R_cam_ref * p_ref_m + t_cam_ref_m;
   const auto is_ahead = p.z >= StereoCamera::kMinDepth_m;
-  const Doubles one = allDoubles(1.0), iz = one / (is_ahead ? p.z : one);
+  const Doubles one = 1.0, iz = one / choose(is_ahead, p.z, one);
   const Doubles x = camera.fx_px * iz, y = camera.fy_px * iz, d = camera.baseline_m * x;
   const Doubles u = x * p.x, v = y * p.y;
   return {{u + camera.cx_px, v + camera.cy_px, d},
           {x * R_cam_ref.x - (u * iz) * R_cam_ref.z, y * R_cam_ref.y - (v * iz) * R_cam_ref.z, (-d * iz) * R_cam_ref.z},
-          is_ahead ? one : Doubles{}};
+          choose(is_ahead, one, 0.0)};
 }
 
 /// Huber's loss of whitened squared residuals.
@@ -31,9 +37,11 @@ struct HuberLoss {
   Doubles chi2;    // 2 rho(r): the squared residual itself in the quadratic part
 };
 inline HuberLoss huberLoss(const Doubles& chi2, double huber_sigmas) {
-  const Doubles k = allDoubles(huber_sigmas), norm = squareRoots(chi2);
+  const Doubles k = huber_sigmas, norm = squareRoots(chi2);
   const auto quadratic = norm <= k;
-  return {quadratic ? allDoubles(1.0) : k / norm, quadratic ? chi2 : 2 * k * norm - k * k};
+  return {choose(quadratic, 1.0, k / norm), choose(quadratic, chi2, 2 * k * norm - k * k)};
 }
 
-}  // namespace motorcade
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -8,9 +8,15 @@
 #include <memory>
 #include <span>
 
-#include "frontend/image/word_lanes.hpp"
+#include "core/instruction_set.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/image/detail_search.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kMeanColumns = 9, kMeanRows = 5, kMargin = kMeanColumns / 2;
@@ -26,7 +32,7 @@ void sumRows(const Image& image, int y, std::int16_t* sums) {
   for (int x = 0; x < image.width(); x += kWordLanes) {
     Words sum{};
     for (const std::uint8_t* row : rows) sum += wordPixels(row + x);
-    storeWords(sums + kMargin + x, sum);
+    store(sums + kMargin + x, sum);
   }
   std::fill_n(sums, kMargin, sums[kMargin]);
   std::fill_n(sums + kMargin + image.width(), kMargin + kWordLanes, sums[kMargin + image.width() - 1]);
@@ -35,17 +41,16 @@ void sumRows(const Image& image, int y, std::int16_t* sums) {
 /// `sums` are those of the rows, as `sumRows` leaves them.
 void subtractMeans(const std::uint8_t* row, const std::int16_t* sums, int width, std::uint8_t* out) {
   const Words per_pixel = allWords((1 << 15) / (kMeanColumns * kMeanRows));  // as `scaled` takes fractions
-  const Words middle = allWords(kMidGray), black{}, white = allWords(UINT8_MAX);
+  const Words middle = allWords(kMidGray), black = allWords(0), white = allWords(UINT8_MAX);
   for (int x = 0; x < width; x += kWordLanes) {
     Words sum{};
-    for (int c = 0; c < kMeanColumns; ++c) sum += loadWords(sums + x + c);
-    const Words detail = wordPixels(row + x) - scaled(sum, per_pixel) + middle, above = detail < black ? black : detail;
-    storeWordsAsBytes(out + x, above > white ? white : above);
+    for (int c = 0; c < kMeanColumns; ++c) sum += load(sums + x + c);
+    const Words detail = wordPixels(row + x) - scaled(sum, per_pixel) + middle;
+    storeWordsAsBytes(out + x, lesser(greater(detail, black), white));
   }
 }
 
 constexpr int kMaxBlocks = kMaxWindowCosts / kWordLanes;
-constexpr Words kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 int blocksOf(int count) { return (count + kWordLanes - 1) / kWordLanes; }
 
@@ -61,7 +66,7 @@ std::uint32_t promisingBlocks(const std::uint8_t* window, std::ptrdiff_t window_
     Words sum{};
     for (int r = 0; r < kHalfSizeWindow.rows; ++r)
       sum += differencesOfEight(from + b * kWordLanes + r * stride, window + r * window_stride);
-    least[b] = leastOf(kLaneNumbers < allWords(count - b * kWordLanes) ? sum : allWords(INT16_MAX));
+    least[b] = leastOf(choose(wordNumbers() < allWords(count - b * kWordLanes), sum, allWords(INT16_MAX)));
   }
   const float worth = kWorthComparing * *std::min_element(least.begin(), least.begin() + blocks);
   std::uint32_t promising = 0;
@@ -79,21 +84,22 @@ class Costs {
   void findLeast(std::uint32_t filled) {
     for (int b = 0; b < blocks_; ++b) {
       const bool is_filled = (filled >> b & 1) != 0;
-      if (!is_filled) storeWords(at(b), allWords(INT16_MAX));
+      if (!is_filled) store(at(b), allWords(INT16_MAX));
       least_[b] = is_filled ? leastOf(block(b)) : INT16_MAX;
     }
   }
   std::int16_t least() const { return *std::min_element(least_.begin(), least_.begin() + blocks_); }
   int first(std::int16_t cost) const {
     const auto b = static_cast<int>(std::find(least_.begin(), least_.begin() + blocks_, cost) - least_.begin());
-    return b * kWordLanes + firstOf(block(b), cost);
+    const auto* const begin = costs_.data() + b * kWordLanes;
+    return static_cast<int>(std::find(begin, begin + kWordLanes, cost) - costs_.data());
   }
   /// The least cost of columns that are no neighbors of column i; INT16_MAX where there are none.
   std::int16_t leastBesides(int i) {
     for (const int b : {std::max(0, i - kNeighbors_px) / kWordLanes, (i + kNeighbors_px) / kWordLanes}) {
       if (b >= blocks_) continue;
-      const Words place = kLaneNumbers + allWords(b * kWordLanes - i);
-      least_[b] = leastOf(magnitude(place) > allWords(kNeighbors_px) ? block(b) : allWords(INT16_MAX));
+      const Words place = wordNumbers() + allWords(b * kWordLanes - i);
+      least_[b] = leastOf(choose(magnitude(place) > allWords(kNeighbors_px), block(b), allWords(INT16_MAX)));
     }
     return least();
   }
@@ -101,8 +107,8 @@ class Costs {
  private:
   std::int16_t* at(int b) { return reinterpret_cast<std::int16_t*>(costs_.data()) + b * kWordLanes; }
   Words block(int b) const {
-    const Words words = loadWords(reinterpret_cast<const std::int16_t*>(costs_.data()) + b * kWordLanes);
-    return kLaneNumbers < allWords(count_ - b * kWordLanes) ? words : allWords(INT16_MAX);
+    const Words words = load(reinterpret_cast<const std::int16_t*>(costs_.data()) + b * kWordLanes);
+    return choose(wordNumbers() < allWords(count_ - b * kWordLanes), words, allWords(INT16_MAX));
   }
 
   int blocks_, count_;
@@ -112,7 +118,7 @@ class Costs {
 
 }  // namespace
 
-DetailedImage withDetail(const Image& image, ImagePool& pool) {
+DetailedImage addDetail(const Image& image, ImagePool& pool) {
   DetailedImage detailed{image, pool.acquire(image.width(), image.height())};
   const auto sums = std::make_unique_for_overwrite<std::int16_t[]>(image.width() + 2 * (kMargin + kWordLanes));
   for (int y = 0; y < image.height(); ++y) {
@@ -122,8 +128,8 @@ DetailedImage withDetail(const Image& image, ImagePool& pool) {
   return detailed;
 }
 
-std::optional<int> searchRow(const DetailedImage& from, int u, int v, const DetailedImage& to, ColumnRange range,
-                             double max_ratio) {
+std::optional<int> search(const DetailedImage& from, int u, int v, const DetailedImage& to, ColumnRange range,
+                          double max_ratio) {
   constexpr int kHalfColumns = kHalfSizeWindow.columns / 2, kHalfRows = kHalfSizeWindow.rows / 2;
   const int first_u = std::max(range.first, kHalfColumns);
   const int last_u = std::min({range.last, to.image.width() - 1 - kHalfColumns, first_u + kMaxWindowCosts - 1});
@@ -143,4 +149,21 @@ std::optional<int> searchRow(const DetailedImage& from, int u, int v, const Deta
   return first_u + best;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(addDetail);
+HWY_EXPORT(search);
+
+DetailedImage withDetail(const Image& image, ImagePool& pool) { return MOTORCADE_KERNEL(addDetail)(image, pool); }
+
+std::optional<int> searchRow(const DetailedImage& from, int u, int v, const DetailedImage& to, ColumnRange range,
+                             double max_ratio) {
+  return MOTORCADE_KERNEL(search)(from, u, v, to, range, max_ratio);
+}
+
 }  // namespace motorcade
+#endif

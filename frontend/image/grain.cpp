@@ -5,19 +5,20 @@
 #include <cstdint>
 #include <vector>
 
-namespace motorcade {
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "frontend/image/grain.cpp"
+#include <hwy/foreach_target.h>
+
+#include "core/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kGrainHalfWindow_px = 3;
 constexpr int kGrainWindowPixels = (2 * kGrainHalfWindow_px + 1) * (2 * kGrainHalfWindow_px + 1);
-constexpr int kGrid_px = 40;
-constexpr std::size_t kMinNeighborhoods = 12;
-
-/// Grain up to which images stay as they are, and from which on all of an image is smoothed. At 10, smoothed images
-/// lose more accuracy of the path than they gain; at 20, matches in images that are not smoothed are half as many.
-constexpr float kHarmlessGrain = 8, kSmoothedGrain = 16;
-constexpr int kWhole = 16;  // of the share, in sixteenths
-
+constexpr int kWhole = 16;    // of the share, in sixteenths
 constexpr int kReach_px = 2;  // of the binomial window
 
 /// Sums of a column of the image under the weights 1, 4, 6, 4, 1; rows beyond the border repeat the last.
@@ -38,6 +39,21 @@ void blendRow(const std::uint8_t* row, const std::uint16_t* sums, int share, int
   }
 }
 
+}  // namespace
+
+float grainAt(const Image& image, int x, int y) {
+  int squares = 0;
+  for (int r = y - kGrainHalfWindow_px; r <= y + kGrainHalfWindow_px; ++r) {
+    const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
+    for (int c = x - kGrainHalfWindow_px; c <= x + kGrainHalfWindow_px; ++c) {
+      const int rough = above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] -
+                        2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
+      squares += rough * rough;
+    }
+  }
+  return std::sqrt(static_cast<float>(squares) / (36.0F * kGrainWindowPixels));
+}
+
 /// The image, by some sixteenths replaced by its mean under the binomial window.
 Image smoothed(const Image& image, int sixteenths, ImagePool& pool) {
   Image smooth = pool.acquire(image.width(), image.height());
@@ -51,26 +67,33 @@ Image smoothed(const Image& image, int sixteenths, ImagePool& pool) {
   return smooth;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(grainAt);
+HWY_EXPORT(smoothed);
+
+namespace {
+
+constexpr int kGrid_px = 40;
+constexpr std::size_t kMinNeighborhoods = 12;
+
+/// Grain up to which images stay as they are, and from which on all of an image is smoothed. At 10, smoothed images
+/// lose more accuracy of the path than they gain; at 20, matches in images that are not smoothed are half as many.
+constexpr float kHarmlessGrain = 8, kSmoothedGrain = 16;
+
 }  // namespace
 
-float grainAround(const Image& image, int x, int y) {
-  int squares = 0;
-  for (int r = y - kGrainHalfWindow_px; r <= y + kGrainHalfWindow_px; ++r) {
-    const std::uint8_t *above = image.row(r - 1), *row = image.row(r), *below = image.row(r + 1);
-    for (int c = x - kGrainHalfWindow_px; c <= x + kGrainHalfWindow_px; ++c) {
-      const int rough = above[c - 1] + above[c + 1] + below[c - 1] + below[c + 1] -
-                        2 * (above[c] + row[c - 1] + row[c + 1] + below[c]) + 4 * row[c];
-      squares += rough * rough;
-    }
-  }
-  return std::sqrt(static_cast<float>(squares) / (36.0F * kGrainWindowPixels));
-}
+float grainAround(const Image& image, int x, int y) { return MOTORCADE_KERNEL(grainAt)(image, x, y); }
 
 std::optional<float> grainOf(const Image& image) {
   constexpr std::uint8_t kWhite = 255;
   std::vector<float> grains;
-  for (int y = kGrid_px / 2; y < image.height() - kGrainHalfWindow_px - 1; y += kGrid_px) {
-    for (int x = kGrid_px / 2; x < image.width() - kGrainHalfWindow_px - 1; x += kGrid_px) {
+  for (int y = kGrid_px / 2; y < image.height() - HWY_NAMESPACE::kGrainHalfWindow_px - 1; y += kGrid_px) {
+    for (int x = kGrid_px / 2; x < image.width() - HWY_NAMESPACE::kGrainHalfWindow_px - 1; x += kGrid_px) {
       const std::uint8_t gray = image.at(x, y);
       if (gray != 0 && gray != kWhite) grains.push_back(grainAround(image, x, y));
     }
@@ -83,8 +106,9 @@ std::optional<float> grainOf(const Image& image) {
 
 Image denoised(const Image& image, float grain_gray, ImagePool& pool) {
   const float share = std::clamp((grain_gray - kHarmlessGrain) / (kSmoothedGrain - kHarmlessGrain), 0.0F, 1.0F);
-  const int sixteenths = static_cast<int>(std::lround(share * kWhole));
-  return sixteenths == 0 ? image : smoothed(image, sixteenths, pool);
+  const int sixteenths = static_cast<int>(std::lround(share * HWY_NAMESPACE::kWhole));
+  return sixteenths == 0 ? image : MOTORCADE_KERNEL(smoothed)(image, sixteenths, pool);
 }
 
 }  // namespace motorcade
+#endif

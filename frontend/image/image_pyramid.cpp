@@ -3,9 +3,15 @@
 #include <cassert>
 #include <utility>
 
-namespace motorcade {
-namespace {
+#include "core/instruction_set.hpp"
 
+#define HWY_TARGET_INCLUDE "frontend/image/image_pyramid.cpp"
+#include <hwy/foreach_target.h>
+
+#include "core/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 void halveRow(const std::uint8_t* upper, const std::uint8_t* lower, std::uint8_t* out, int width) {
   for (int x = 0; x < width; ++x) {
     const int sum = upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1];
@@ -13,12 +19,19 @@ void halveRow(const std::uint8_t* upper, const std::uint8_t* lower, std::uint8_t
   }
 }
 
-}  // namespace
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(halveRow);
 
 Image halved(const Image& image, ImagePool& pool) {
   Image half = pool.acquire(image.width() / 2, image.height() / 2);
+  const auto halve = MOTORCADE_KERNEL(halveRow);
   for (int y = 0; y < half.height(); ++y)
-    halveRow(image.row(2 * y), image.row(2 * y + 1), half.mutableRow(y), half.width());
+    halve(image.row(2 * y), image.row(2 * y + 1), half.mutableRow(y), half.width());
   return half;
 }
 
@@ -37,3 +50,4 @@ ImagePyramid buildPyramid(const Image& image, int levels, ImagePool& pool) {
 }
 
 }  // namespace motorcade
+#endif

@@ -6,11 +6,17 @@
 #include <cstdlib>
 
 #include "core/elementary.hpp"
+#include "core/instruction_set.hpp"
 #include "frontend/image/image_pyramid.hpp"
-#include "frontend/image/patch_sampling.hpp"
 #include "frontend/image/window_differences.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/image/patch_alignment.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/patch_sampling.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kOtherShift = 3;        // from samples to words of the other image
@@ -39,10 +45,9 @@ class MomentSums {
       : patch_(patch), mean_(allWords(patch.mean - kHalfUnit) & mask) {}
 
   void add(int row, const Words& samples) {
-    const Words j = (samples - mean_) >> static_cast<std::int16_t>(kOtherShift);
-    const auto plane = [&](const PatchTemplate::Plane& words) {
-      return loadWords(words.data() + row * PatchTemplate::kStride);
-    };
+    const Words j = (samples - mean_) >> kOtherShift;
+    const auto plane = [&](const PatchTemplate::Plane& words)
+                           HWY_ATTR { return load(words.data() + row * PatchTemplate::kStride); };
     appearance_ += products(plane(patch_.appearance), j);
     d0_ += products(plane(patch_.descent[0]), j);
     d1_ += products(plane(patch_.descent[1]), j);
@@ -186,8 +191,8 @@ float squaredShift(const FourFloats& step) {
 
 }  // namespace
 
-std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
-                                       const PatchParams& params) {
+std::optional<AlignedPatch> align(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
+                                  const PatchParams& params) {
   const auto max_shift_px2 = static_cast<float>(params.max_shift_px * params.max_shift_px);
   const double max_step_px2 = params.max_step_px * params.max_step_px;
   const Words mask = windowMask(patch.window_px);
@@ -216,25 +221,6 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
                         hypotenuse(sigma, static_cast<float>(kPatchSigmaFloor_px))};
   }
   return std::nullopt;
-}
-
-std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, const Eigen::Vector2f& point_px,
-                                       const ImagePyramid& to, const Eigen::Vector2f& guess_px, int first_level,
-                                       const PatchParams& params) {
-  float u = guess_px.x(), v = guess_px.y();
-  std::optional<AlignedPatch> aligned;
-  for (int level = first_level; level >= 0; --level) {
-    const auto patch = makeTemplate(from.levels[level], toLevel(point_px.x(), level), toLevel(point_px.y(), level),
-                                    kPatchWindow_px, PatchDeformation::kScale);
-    if (patch) aligned = alignPatch(*patch, to.levels[level], {toLevel(u, level), toLevel(v, level)}, params);
-    if (!patch || !aligned) {
-      if (level == 0) return std::nullopt;
-      continue;  // without texture at a coarse level the guess stays as it is
-    }
-    u = fromLevel(aligned->u_px, level);
-    v = fromLevel(aligned->v_px, level);
-  }
-  return aligned;
 }
 
 namespace {
@@ -269,8 +255,8 @@ std::optional<StereoMatch> acceptedMatch(float disparity_px, const PatchTemplate
 
 }  // namespace
 
-std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
-                                           double predicted_disparity_px, const DisparityParams& params) {
+std::optional<StereoMatch> refine(const Image& left, const Image& right, double u_px, double v_px,
+                                  double predicted_disparity_px, const DisparityParams& params) {
   const auto u = static_cast<float>(u_px), v = static_cast<float>(v_px);
   const auto patch = makeTemplate(left, u, v, kPatchWindow_px, PatchDeformation::kSlope);
   if (!patch) return std::nullopt;
@@ -304,4 +290,43 @@ std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right
   return std::nullopt;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(align);
+HWY_EXPORT(refine);
+
+std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
+                                       const PatchParams& params) {
+  return MOTORCADE_KERNEL(align)(patch, image, guess_px, params);
+}
+
+std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, const Eigen::Vector2f& point_px,
+                                       const ImagePyramid& to, const Eigen::Vector2f& guess_px, int first_level,
+                                       const PatchParams& params) {
+  float u = guess_px.x(), v = guess_px.y();
+  std::optional<AlignedPatch> aligned;
+  for (int level = first_level; level >= 0; --level) {
+    const auto patch = makeTemplate(from.levels[level], toLevel(point_px.x(), level), toLevel(point_px.y(), level),
+                                    kPatchWindow_px, PatchDeformation::kScale);
+    if (patch) aligned = alignPatch(*patch, to.levels[level], {toLevel(u, level), toLevel(v, level)}, params);
+    if (!patch || !aligned) {
+      if (level == 0) return std::nullopt;
+      continue;  // without texture at a coarse level the guess stays as it is
+    }
+    u = fromLevel(aligned->u_px, level);
+    v = fromLevel(aligned->v_px, level);
+  }
+  return aligned;
+}
+
+std::optional<StereoMatch> refineDisparity(const Image& left, const Image& right, double u_px, double v_px,
+                                           double predicted_disparity_px, const DisparityParams& params) {
+  return MOTORCADE_KERNEL(refine)(left, right, u_px, v_px, predicted_disparity_px, params);
+}
+
 }  // namespace motorcade
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include <Eigen/Core>
@@ -37,6 +38,18 @@ std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& 
 std::optional<AlignedPatch> alignPatch(const ImagePyramid& from, const Eigen::Vector2f& point_px,
                                        const ImagePyramid& to, const Eigen::Vector2f& guess_px, int first_level,
                                        const PatchParams& params);
+
+/// Asks for the pixels of a patch around (u, v) to be brought into the cache.
+inline void prefetchPatch(const Image& image, float u_px, float v_px, int window_px) {
+  const int half = window_px / 2 + 1, u = static_cast<int>(u_px), v = static_cast<int>(v_px);
+  const int left = std::clamp(u - half, 0, image.width() - 1), right = std::clamp(u + half, 0, image.width() - 1);
+  const int bottom = std::min(v + half + 1, image.height() - 1);
+  for (int y = std::max(v - half, 0); y <= bottom; ++y) {
+    __builtin_prefetch(image.row(y) + left);
+    __builtin_prefetch(image.row(y) + right);
+    asm volatile("");  // or GCC takes the loop to be without effect
+  }
+}
 
 struct DisparityParams {
   double search_radius_px = 3;  // of the whole-pixel search around the prediction; with 0 there is only the refinement

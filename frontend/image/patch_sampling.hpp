@@ -1,4 +1,9 @@
-#pragma once
+#if defined(MOTORCADE_PATCH_SAMPLING) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTORCADE_PATCH_SAMPLING
+#undef MOTORCADE_PATCH_SAMPLING
+#else
+#define MOTORCADE_PATCH_SAMPLING
+#endif
 
 #include <algorithm>
 #include <array>
@@ -7,10 +12,11 @@
 #include <cstddef>
 
 #include "core/image.hpp"
-#include "frontend/image/word_lanes.hpp"
+#include "frontend/image/pixel_lanes.hpp"
 
+HWY_BEFORE_NAMESPACE();
 /// Samples an image between its pixels, a row of sixteen at a time, in integers of 1/64 gray level.
-namespace motorcade {
+namespace motorcade::HWY_NAMESPACE {
 
 inline constexpr int kSampleBits = 6, kSampleLevels = 1 << kSampleBits;  // of a sample per gray level, and per pixel
 inline constexpr int kRowLevels = 1 << 15;                               // per pixel, as `scaled` takes fractions
@@ -23,22 +29,9 @@ inline bool inside(const Image& image, float u_px, float v_px) {
          v_px <= static_cast<float>(image.height() - 1);
 }
 
-/// Prefetches the pixels of a patch around (u, v) into the cache.
-inline void prefetchPatch(const Image& image, float u_px, float v_px, int window_px) {
-  const int half = window_px / 2 + 1, u = static_cast<int>(u_px), v = static_cast<int>(v_px);
-  const int left = std::clamp(u - half, 0, image.width() - 1), right = std::clamp(u + half, 0, image.width() - 1);
-  const int bottom = std::min(v + half + 1, image.height() - 1);
-  for (int y = std::max(v - half, 0); y <= bottom; ++y) {
-    __builtin_prefetch(image.row(y) + left);
-    __builtin_prefetch(image.row(y) + right);
-    asm volatile("");  // or GCC takes the loop to be without effect
-  }
-}
-
 /// Mask of ones inside the window, zeros to its right.
 inline Words windowMask(int window_px) {
-  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  return kColumns < allWords(window_px);  // minus one: all bits set
+  return wordNumbers() < allWords(window_px);  // minus one: all bits set
 }
 
 /// Position of a column in 1/64 px, the resolution of sampling between columns.
@@ -117,50 +110,53 @@ class SampleColumns {
     return static_cast<std::int16_t>(fraction << 8 | (kSampleLevels - fraction));
   }
   /// Columns one pixel apart, the first of them to the right of the row's first pixel. Samples without weight are zero.
-  explicit SampleColumns(const Words& weights)
-      : second_group_(kWordLanes / 2), pixels_(kNextTo), weights_(Bytes(weights)) {}
+  explicit SampleColumns(const Words& weights) : pixels_(load(kNextTo)), weights_(weights) {}
 
   /// Columns at any positions from left to right. Those of a group of eight lie within 15 px, all between 0 and
   /// `last_px`, which is inside the image.
-  SampleColumns(const std::array<float, kWordLanes>& positions_px, int last_px) {
+  SampleColumns(const std::array<float, kWordLanes>& positions_px, int last_px) : are_neighbors_(false) {
+    std::array<std::uint8_t, kByteLanes> pixels;
+    std::array<std::int16_t, kWordLanes> weights;
     for (int i = 0; i < kWordLanes; ++i) {
       // NOLINTNEXTLINE(bugprone-incorrect-roundings): positions are not negative
       const int position = static_cast<int>(positions_px[i] * kSampleLevels + 0.5F);
-      const int pixel = std::min(position >> kSampleBits, last_px - 1), right_weight = position - pixel * kSampleLevels;
+      const int pixel = std::min(position >> kSampleBits, last_px - 1);
       if (i == 0) first_group_ = pixel;
-      if (i == kWordLanes / 2) second_group_ = pixel;
-      const int column = pixel - (i < kWordLanes / 2 ? first_group_ : second_group_);
-      pixels_[2 * i] = static_cast<std::uint8_t>(column);
-      pixels_[2 * i + 1] = static_cast<std::uint8_t>(column + 1);
-      weights_[2 * i] = static_cast<std::uint8_t>(kSampleLevels - right_weight);
-      weights_[2 * i + 1] = static_cast<std::uint8_t>(right_weight);
+      if (i == kGroup) second_group_ = pixel;
+      const int column = pixel - (i < kGroup ? first_group_ : second_group_);
+      pixels[2 * i] = static_cast<std::uint8_t>(column);
+      pixels[2 * i + 1] = static_cast<std::uint8_t>(column + 1);
+      weights[i] = weightsOf(position - pixel * kSampleLevels);
     }
+    pixels_ = load(pixels.data()), weights_ = load(weights.data());
   }
 
-  Words operator()(const std::uint8_t* row) const {
+  HWY_INLINE Words operator()(const std::uint8_t* row) const {
     const std::uint8_t *p = row + first_group_, *q = row + second_group_;
-#ifdef __AVX2__
-    const __m256i both =
-        _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))),
-                                _mm_loadu_si128(reinterpret_cast<const __m128i*>(q)), 1);
-    return Words(_mm256_maddubs_epi16(_mm256_shuffle_epi8(both, __m256i(pixels_)), __m256i(weights_)));
+#if MOTORCADE_SSE4
+    return weighedPixels(p, q, pixels_, weights_);
 #else
-    Words samples;
+    const Words left = weights_ & 0xFF, right = weights_ >> 8;
+    if (are_neighbors_) return wordPixels(p) * left + wordPixels(p + 1) * right;
+    Words pixels_left, pixels_right;
     for (int i = 0; i < kWordLanes; ++i) {
-      const std::uint8_t* group = i < kWordLanes / 2 ? p : q;
-      samples[i] = static_cast<std::int16_t>(group[pixels_[2 * i]] * weights_[2 * i] +
-                                             group[pixels_[2 * i + 1]] * weights_[2 * i + 1]);
+      const std::uint8_t* const pixel = (i < kGroup ? p : q) + pixels_[2 * i];
+      pixels_left.set(i, pixel[0]), pixels_right.set(i, pixel[1]);
     }
-    return samples;
+    return pixels_left * left + pixels_right * right;
 #endif
   }
 
  private:
-  using Bytes = std::uint8_t __attribute__((vector_size(2 * kWordLanes)));
-  static constexpr Bytes kNextTo{0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8,
-                                 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8};
-  int first_group_ = 0, second_group_ = 0;
-  Bytes pixels_, weights_;
+  static constexpr int kGroup = kWordLanes / 2;
+  static constexpr std::uint8_t kNextTo[]{0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8,
+                                          0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8};
+  int first_group_ = 0, second_group_ = kGroup;
+  bool are_neighbors_ = true;
+  Bytes pixels_;
+  Words weights_;
 };
 
-}  // namespace motorcade
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

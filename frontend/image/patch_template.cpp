@@ -4,9 +4,15 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "frontend/image/patch_template.cpp"
+#include <hwy/foreach_target.h>
+
 #include "frontend/image/patch_sampling.hpp"
 
-namespace motorcade {
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kStride = PatchTemplate::kStride;
@@ -25,7 +31,8 @@ FourFloats unitsOf(PatchDeformation deformation) {
                     deformation == PatchDeformation::kScale ? kGradientUnit : kMomentUnit, kMomentUnit};
 }
 
-using Square = std::array<Words, kMaxPatchWindow_px + 2>;
+/// Samples of a square, row by row, and what may be read after them.
+using Square = std::array<std::int16_t, (kMaxPatchWindow_px + 3) * kStride>;
 
 /// Samples a square around (u, v).
 void sampleSquare(const Image& image, const ColumnPosition& u, float v_px, int side_px, Square& out) {
@@ -37,7 +44,7 @@ void sampleSquare(const Image& image, const ColumnPosition& u, float v_px, int s
   Words upper = columns(block.row(0));
   for (int r = 0; r < side_px; ++r) {
     const Words lower = columns(block.row(r + 1));
-    out[r] = betweenRows(upper, lower, fraction);
+    store(out.data() + r * kStride, betweenRows(upper, lower, fraction));
     upper = lower;
   }
 }
@@ -55,7 +62,8 @@ void sampleScaledSquare(const Image& image, const ColumnPosition& u, float v_px,
   for (int r = 0; r < side_px; ++r) {
     const RowPosition v(std::clamp(v_px + static_cast<float>(r - half) * spacing_px, 0.0F, last_v));
     const int below = std::min(v.pixel + 1, image.height() - 1);
-    out[r] = betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction));
+    store(out.data() + r * kStride,
+          betweenRows(columns(image.row(v.pixel)), columns(image.row(below)), allWords(v.fraction)));
   }
 }
 
@@ -63,9 +71,9 @@ void sampleScaledSquare(const Image& image, const ColumnPosition& u, float v_px,
 int meanSample(const Square& square, int window_px) {
   const Words inner = windowMask(window_px + 1) - windowMask(1);  // minus one in the window's columns
   WordSums sums{};
-  for (int r = 1; r <= window_px; ++r) sums -= products(square[r], inner);
+  for (int r = 1; r <= window_px; ++r) sums -= products(load(square.data() + r * kStride), inner);
   const int pixels = window_px * window_px;
-  return (totals(sums, sums, sums, sums)[0] + pixels / 2) / pixels;
+  return (total(sums) + pixels / 2) / pixels;
 }
 
 /// Fills the planes from the samples.
@@ -75,20 +83,19 @@ void fillPlanes(PatchTemplate& patch, const Square& square, PatchDeformation def
   const Words mask = windowMask(window);
   const Words rounding_mean = allWords(patch.mean - (1 << (kAppearanceShift - 1)));  // half a unit below the mean
   constexpr int kMomentShift = 10;  // from differences of samples times pixels to `kMomentUnit`
-  constexpr Words kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const Words columns = (kColumns - static_cast<std::int16_t>(half)) << static_cast<std::int16_t>(kMomentShift);
-  Words above = afterFirst(square[0]), here = afterFirst(square[1]);
+  const Words columns = (wordNumbers() - allWords(half)) << kMomentShift;
+  // What is to the right of the window is masked.
+  const auto samplesAt = [&](int row, int column) HWY_ATTR { return load(square.data() + row * kStride + column); };
+  Words above = samplesAt(0, 1), here = samplesAt(1, 1);
   for (int r = 0; r < window; ++r) {
-    const Words& samples = square[r + 1];
-    const Words below = afterFirst(square[r + 2]), rows = allWords((r - half) * (1 << kMomentShift));
+    const Words below = samplesAt(r + 2, 1), rows = allWords((r - half) * (1 << kMomentShift));
     // Differences of samples two pixels apart.
-    const Words du = (afterSecond(samples) - samples) & mask, dv = (below - above) & mask;
-    const Words a = ((here - rounding_mean) >> static_cast<std::int16_t>(kAppearanceShift)) & mask;
-    storeWords(patch.appearance.data() + r * kStride, a);
-    storeWords(patch.descent[0].data() + r * kStride, reduced(du, kGradientShift));
-    storeWords(patch.descent[1].data() + r * kStride, scale ? reduced(dv, kGradientShift) : scaled(du, rows));
-    storeWords(patch.descent[2].data() + r * kStride,
-               scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns));
+    const Words du = (samplesAt(r + 1, 2) - samplesAt(r + 1, 0)) & mask, dv = (below - above) & mask;
+    const Words a = ((here - rounding_mean) >> kAppearanceShift) & mask;
+    store(patch.appearance.data() + r * kStride, a);
+    store(patch.descent[0].data() + r * kStride, reduced(du, kGradientShift));
+    store(patch.descent[1].data() + r * kStride, scale ? reduced(dv, kGradientShift) : scaled(du, rows));
+    store(patch.descent[2].data() + r * kStride, scale ? scaled(du, columns) + scaled(dv, rows) : scaled(du, columns));
     above = here;
     here = below;
   }
@@ -105,7 +112,7 @@ struct TemplateSums {
   WordSums d00{}, d01{}, d02{}, d11{}, d12{}, d22{};
 
   explicit TemplateSums(const PatchTemplate& patch) {
-    const auto row = [](const PatchTemplate::Plane& plane, int r) { return loadWords(plane.data() + r * kStride); };
+    const auto row = [](const PatchTemplate::Plane& plane, int r) HWY_ATTR { return load(plane.data() + r * kStride); };
     const auto& [plane0, plane1, plane2] = patch.descent;
     const Words one = allWords(1);
     for (int r = 0; r < patch.window_px; ++r) {
@@ -170,8 +177,8 @@ Rows orthogonalize(PatchTemplate& patch, const TemplateSums& sums, PatchDeformat
 }
 
 FourFloats cross(const FourFloats& a, const FourFloats& b) {
-  const auto next = [](const FourFloats& x) { return __builtin_shufflevector(x, x, 0, 2, 3, 1); };
-  const auto last = [](const FourFloats& x) { return __builtin_shufflevector(x, x, 0, 3, 1, 2); };
+  const auto next = [](const FourFloats& x) HWY_ATTR { return __builtin_shufflevector(x, x, 0, 2, 3, 1); };
+  const auto last = [](const FourFloats& x) HWY_ATTR { return __builtin_shufflevector(x, x, 0, 3, 1, 2); };
   return next(a) * last(b) - last(a) * next(b);
 }
 
@@ -194,8 +201,8 @@ constexpr float kMinInformation = 60;
 
 }  // namespace
 
-std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
-                                          PatchDeformation deformation, float scale) {
+std::optional<PatchTemplate> make(const Image& image, float u_px, float v_px, int window_px,
+                                  PatchDeformation deformation, float scale) {
   assert(window_px % 2 == 1 && window_px <= kMaxPatchWindow_px);
   // The only object returned, so that it is never copied. (An empty one would be cleared first.)
   std::optional<PatchTemplate> patch(std::in_place);
@@ -205,6 +212,7 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   }
   const ColumnPosition u(u_px);
   Square square;
+  store(square.data() + (window_px + 2) * kStride, Words{});
   if (scale == 1) {
     sampleSquare(image, u, v_px, window_px + 2, square);
   } else {
@@ -231,4 +239,18 @@ std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float 
   return patch;
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(make);
+
+std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
+                                          PatchDeformation deformation, float scale) {
+  return MOTORCADE_KERNEL(make)(image, u_px, v_px, window_px, deformation, scale);
+}
+
 }  // namespace motorcade
+#endif

@@ -7,9 +7,10 @@
 #include <Eigen/Core>
 
 #include "core/image.hpp"
-#include "frontend/image/float_lanes.hpp"
-
 namespace motorcade {
+
+using FourFloats = float __attribute__((vector_size(16)));
+inline FourFloats allFour(float value) { return FourFloats{value, value, value, value}; }
 
 inline constexpr int kPatchWindow_px = 11;  // side of the patches of flow and stereo, odd
 inline constexpr int kMaxPatchWindow_px = 13;

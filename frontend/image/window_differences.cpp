@@ -5,9 +5,15 @@
 #include <cassert>
 #include <cstring>
 
-#include "frontend/image/word_lanes.hpp"
+#include "core/instruction_set.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/image/window_differences.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr int kColumnLanes = 2 * kWordLanes;  // columns that sixteen neighboring windows may span
@@ -21,26 +27,25 @@ class Differences {
 
  public:
   explicit Differences(const Window& window) {
-    constexpr Words kLanes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const Words inside = kLanes < allWords(kColumns);  // minus one
+    const Words inside = wordNumbers() < allWords(kColumns);  // minus one
     WordSums sums{};
     for (int r = 0; r < kRows; ++r) {
       const Words pixels = wordPixels(window.image.row(window.v - kRows / 2 + r) + window.u - kColumns / 2);
-      storeWords(pixels_.data() + r * kWordLanes, pixels);
+      store(pixels_.data() + r * kWordLanes, pixels);
       sums -= products(pixels, inside);
     }
-    sum_ = totals(sums, sums, sums, sums)[0];
+    sum_ = total(sums);
   }
 
   /// Costs of sixteen neighboring windows, the first pixel of the first at `from`.
   Words operator()(const std::uint8_t* from, std::ptrdiff_t stride) const {
     const Words per_pixel = allWords((1 << 15) / kPixels);  // as `scaled` takes fractions
-    const Words offset = scaled(windowSums(from, stride) - static_cast<std::int16_t>(sum_), per_pixel);
+    const Words offset = scaled(windowSums(from, stride) - allWords(sum_), per_pixel);
     Words cost{};
     for (int r = 0; r < kRows; ++r) {
       const std::uint8_t* row = from + r * stride;
       for (int c = 0; c < kColumns; ++c)
-        cost += magnitude(wordPixels(row + c) - (offset + pixels_[r * kWordLanes + c]));
+        cost += magnitude(wordPixels(row + c) - (offset + Words(pixels_[r * kWordLanes + c])));
     }
     return cost;
   }
@@ -54,10 +59,10 @@ class Differences {
     for (int c = 0; c < kColumnLanes; c += kWordLanes) {
       Words sum{};
       for (int r = 0; r < kRows; ++r) sum += wordPixels(from + r * stride + c);
-      storeWords(sums_of_columns.data() + c, sum);
+      store(sums_of_columns.data() + c, sum);
     }
     Words sums{};
-    for (int c = 0; c < kColumns; ++c) sums += loadWords(sums_of_columns.data() + c);
+    for (int c = 0; c < kColumns; ++c) sums += load(sums_of_columns.data() + c);
     return sums;
   }
 
@@ -82,12 +87,26 @@ void fillCosts(const Window& window, const std::uint8_t* from, std::ptrdiff_t st
 
 }  // namespace
 
-void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
-                       std::span<std::uint16_t> costs, std::uint32_t blocks) {
+void fillDifferences(const Window& window, const Image& other, int other_u, int other_v, std::span<std::uint16_t> costs,
+                     std::uint32_t blocks) {
   assert(window.size == kHalfSizeWindow || window.size == kFullSizeWindow);
   const std::uint8_t* from = other.row(other_v - window.size.rows / 2) + other_u - window.size.columns / 2;
   const auto fill = window.size == kHalfSizeWindow ? fillCosts<kHalfSizeWindow> : fillCosts<kFullSizeWindow>;
   fill(window, from, other.stride(), costs, blocks);
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(fillDifferences);
+
+void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
+                       std::span<std::uint16_t> costs, std::uint32_t blocks) {
+  MOTORCADE_KERNEL(fillDifferences)(window, other, other_u, other_v, costs, blocks);
+}
+
 }  // namespace motorcade
+#endif

@@ -1,25 +1,85 @@
 #include "frontend/matching/corner_lookup.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <span>
 
-#include "frontend/image/float_lanes.hpp"
+#include "core/instruction_set.hpp"
 #include "frontend/image/image_pyramid.hpp"
-#include "frontend/image/word_lanes.hpp"
+#include "frontend/matching/corner_search.hpp"
 #include "frontend/matching/lesser.hpp"
 
+#define HWY_TARGET_INCLUDE "frontend/matching/corner_lookup.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
+
+/// Sum of the absolute differences of the pixels.
+int differenceOfPixels(const std::uint8_t* a, const std::uint8_t* b) {
+  int sum = 0;
+  for (int i = 0; i < Signature::kPixels; ++i) sum += std::abs(a[i] - b[i]);
+  return sum;
+}
+
+void fillSignature(const Image& image, int x, int y, std::uint8_t* out) {
+  constexpr int kSide = Signature::kSide;
+  static_assert(2 * kSide == kWordLanes);
+  std::array<Words, kSide / 2> pixels;
+  Words sums{};
+  for (int i = 0; i < kSide / 2; ++i)
+    sums += pixels[i] = wordPixels(image.row(y + 2 * i) + x, image.row(y + 2 * i + 1) + x);
+  constexpr int kMeanGray = 128;
+  const Words shift = allWords(kMeanGray - total(products(sums, allWords(1))) / (kSide * kSide));
+  for (int i = 0; i < kSide / 2; ++i)
+    storeWordsAsBytes(out + i * kWordLanes, lesser(greater(pixels[i] + shift, allWords(0)), allWords(UINT8_MAX)));
+}
+
+/// Takes the corners that were found within the bounds one by one, without a branch: which of them looks more like the
+/// point is unforeseeable.
+void compareFound(CornerSearch& search) {
+  for (const int place : std::span(search.within).first(search.count)) {
+    const int difference = differenceOfPixels(search.look->pixels(), search.signatures[place].pixels());
+    const std::int64_t candidate = CornerSearch::key(difference, search.corners[place]);
+    search.second = motorcade::lesser(search.second, motorcade::greater(search.first, candidate));
+    search.first = motorcade::lesser(search.first, candidate);
+  }
+  search.count = 0;
+}
+
+void findWithin(CornerSearch& search, const Eigen::Vector2f& point_px, const ShiftBounds& bounds, int begin, int end) {
+  const Floats u = point_px.x(), v = point_px.y();
+  for (int i = begin; i < end; i += kFloatLanes) {
+    const Floats du = load(search.us_px + i) - u, dv = load(search.vs_px + i) - v;
+    const unsigned inside = bitsOf((du >= bounds.min_du_px) & (du <= bounds.max_du_px) & (dv >= bounds.min_dv_px) &
+                                   (dv <= bounds.max_dv_px)) &
+                            ((1U << std::min(end - i, kFloatLanes)) - 1);
+    for (int k = 0; k < kFloatLanes; ++k) {
+      search.within[search.count] = i + k;
+      search.count += inside >> k & 1;
+    }
+    if (search.count > search.within.size() - kFloatLanes) compareFound(search);
+  }
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace motorcade {
-namespace {
 
-using WordBytes = std::uint8_t __attribute__((vector_size(kWordLanes)));
-
-}  // namespace
+HWY_EXPORT(differenceOfPixels);
+HWY_EXPORT(fillSignature);
+HWY_EXPORT(compareFound);
+HWY_EXPORT(findWithin);
 
 Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
   const int last_level = static_cast<int>(pyramid.levels.size()) - 1;
+  const auto fill = MOTORCADE_KERNEL(fillSignature);
   for (int level = 0; level < 2; ++level) {
     const Image& image = pyramid.levels[std::min(level, last_level)];
     const auto start = [&](float px, int size) {
@@ -32,66 +92,15 @@ Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
 }
 
 int Signature::distance(const Signature& other) const {
-  int sum = 0;
-  for (std::size_t i = 0; i < values_.size(); ++i) sum += std::abs(values_[i] - other.values_[i]);
-  return sum;
+  return MOTORCADE_KERNEL(differenceOfPixels)(pixels(), other.pixels());
 }
-
-void Signature::fill(const Image& image, int x, int y, std::uint8_t* out) {
-  static_assert(2 * kSide == kWordLanes);
-  std::array<Words, kSide / 2> pixels;
-  Words sums{};
-  for (int i = 0; i < kSide / 2; ++i)
-    sums += pixels[i] = wordPixels(image.row(y + 2 * i) + x, image.row(y + 2 * i + 1) + x);
-  const WordSums pairs = products(sums, allWords(1));
-  constexpr int kMeanGray = 128;
-  const Words shift = allWords(kMeanGray - totals(pairs, pairs, pairs, pairs)[0] / (kSide * kSide)), black{},
-              white = allWords(255);
-  for (int i = 0; i < kSide / 2; ++i) {
-    const Words shifted = pixels[i] + shift, above = shifted < black ? black : shifted;
-    const auto bytes = __builtin_convertvector(above > white ? white : above, WordBytes);
-    std::memcpy(out + i * kWordLanes, &bytes, sizeof bytes);
-  }
-}
-
-/// Takes corners one by one, without a branch: which of them looks more like the point is unforeseeable.
-class CornerLookup::TwoMostSimilar {
- public:
-  TwoMostSimilar(const CornerLookup& lookup, const Signature& look, double max_difference)
-      : lookup_(lookup),
-        look_(look),
-        none_(key(static_cast<int>(max_difference * Signature::kPixels), 0)),
-        first_(none_),
-        second_(none_) {}
-
-  void add(int place) {
-    const std::int64_t candidate = key(look_.distance(lookup_.signatures_[place]), lookup_.grid_.byPlace()[place]);
-    second_ = lesser(second_, greater(first_, candidate));
-    first_ = lesser(first_, candidate);
-  }
-  void addTo(Guesses& guesses, const Eigen::Vector2f& point_px) const {
-    for (const std::int64_t found : {first_, second_}) {
-      if (found == none_) return;
-      const Corner& corner = lookup_.corners_[found & UINT32_MAX];
-      guesses.add({corner.u_px - point_px.x(), corner.v_px - point_px.y()});
-    }
-  }
-
- private:
-  /// Of the corners that look as similar, the first one is the least.
-  static std::int64_t key(int distance, int corner) { return std::int64_t{distance} << 32 | corner; }
-
-  const CornerLookup& lookup_;
-  const Signature& look_;
-  std::int64_t none_, first_, second_;
-};
 
 CornerLookup::CornerLookup(const Features& features)
     : corners_(features.corners),
       grid_(features.corners, features.left.levels.front().width(), features.left.levels.front().height(),
             [](const Corner& c) { return Eigen::Vector2f(c.u_px, c.v_px); }),
-      us_px_(corners_.size() + kFloatLanes),
-      vs_px_(corners_.size() + kFloatLanes) {
+      us_px_(corners_.size() + HWY_NAMESPACE::kFloatLanes),
+      vs_px_(corners_.size() + HWY_NAMESPACE::kFloatLanes) {
   signatures_.reserve(corners_.size());
   for (const int i : grid_.byPlace()) {
     const Corner& corner = corners_[i];
@@ -101,37 +110,24 @@ CornerLookup::CornerLookup(const Features& features)
   }
 }
 
-void CornerLookup::addWithin(const Eigen::Vector2f& point_px, const ShiftBounds& bounds, TwoMostSimilar& best) const {
-  const Floats u = allFloats(point_px.x()), v = allFloats(point_px.y());
-  const Floats min_du = allFloats(bounds.min_du_px), max_du = allFloats(bounds.max_du_px);
-  const Floats min_dv = allFloats(bounds.min_dv_px), max_dv = allFloats(bounds.max_dv_px);
-  std::array<int, 32 * kFloatLanes> within;
-  std::size_t count = 0;
-  const auto addAll = [&] {
-    for (const int place : std::span(within).first(count)) best.add(place);
-    count = 0;
-  };
-  const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
-  grid_.forEachRangeNear(point_px + first, point_px + last, [&](int begin, int end) {
-    for (int i = begin; i < end; i += kFloatLanes) {
-      const Floats du = loadFloats(us_px_.data() + i) - u, dv = loadFloats(vs_px_.data() + i) - v;
-      const unsigned inside = bitsOf((du >= min_du) & (du <= max_du) & (dv >= min_dv) & (dv <= max_dv)) &
-                              ((1U << std::min(end - i, kFloatLanes)) - 1);
-      for (int k = 0; k < kFloatLanes; ++k) {
-        within[count] = i + k;
-        count += inside >> k & 1;
-      }
-      if (count > within.size() - kFloatLanes) addAll();
-    }
-  });
-  addAll();
-}
-
 void CornerLookup::addSimilar(const Signature& look, const Eigen::Vector2f& point_px, const ShiftBounds& bounds,
                               double max_difference, Guesses& guesses) const {
-  TwoMostSimilar best(*this, look, max_difference);
-  addWithin(point_px, bounds, best);
-  best.addTo(guesses, point_px);
+  const std::int64_t none = CornerSearch::key(static_cast<int>(max_difference * Signature::kPixels), 0);
+  CornerSearch search;
+  search.us_px = us_px_.data(), search.vs_px = vs_px_.data();
+  search.signatures = signatures_.data(), search.corners = grid_.byPlace().data(), search.look = &look;
+  search.first = search.second = none;
+  const Eigen::Vector2f first(bounds.min_du_px, bounds.min_dv_px), last(bounds.max_du_px, bounds.max_dv_px);
+  const auto find = MOTORCADE_KERNEL(findWithin);
+  grid_.forEachRangeNear(point_px + first, point_px + last,
+                         [&](int begin, int end) { find(search, point_px, bounds, begin, end); });
+  MOTORCADE_KERNEL(compareFound)(search);
+  for (const std::int64_t found : {search.first, search.second}) {
+    if (found == none) return;
+    const Corner& corner = corners_[found & UINT32_MAX];
+    guesses.add({corner.u_px - point_px.x(), corner.v_px - point_px.y()});
+  }
 }
 
 }  // namespace motorcade
+#endif

@@ -41,8 +41,9 @@ class alignas(64) Signature {
   /// Sum of the absolute differences of the pixels.
   int distance(const Signature& other) const;
 
+  const std::uint8_t* pixels() const { return values_.data(); }
+
  private:
-  static void fill(const Image& image, int x, int y, std::uint8_t* out);
   std::array<std::uint8_t, kPixels> values_;
 };
 
@@ -56,9 +57,6 @@ class CornerLookup {
                   double max_difference, Guesses& guesses) const;
 
  private:
-  class TwoMostSimilar;
-  void addWithin(const Eigen::Vector2f& point_px, const ShiftBounds& bounds, TwoMostSimilar& best) const;
-
   const std::vector<Corner>& corners_;
   PointGrid grid_;
   // Of each corner, as the grid has them, with a vector of others behind.

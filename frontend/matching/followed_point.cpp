@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/elementary.hpp"
-#include "frontend/image/patch_sampling.hpp"
+#include "frontend/image/patch_alignment.hpp"
 
 namespace motorcade {
 namespace {

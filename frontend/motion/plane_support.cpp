@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "frontend/geometry/double_lanes.hpp"
+#include "core/instruction_set.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/motion/plane_support.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/geometry/lane_algebra.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 // Distances from a plane, in tolerances.
@@ -23,28 +29,41 @@ struct PlaneLanes {
 Doubles support(std::span<const LowPoint> points, const PlaneLanes& planes) {
   Doubles sum{};
   for (const auto& c : points) {
-    const Doubles x = (planes.height_m - dot(planes.normal_cam, allDoubles(c.p_cam))) / allDoubles(c.tolerance_m);
-    const Doubles against = x < -kBelow ? allDoubles(-kBelowPenalty) : Doubles{};
-    sum += x > -kSupport && x < kSupport ? 1 - x * x / (kSupport * kSupport) : against;
+    const Doubles x = (planes.height_m - dot(planes.normal_cam, allDoubles(c.p_cam))) / c.tolerance_m;
+    const Doubles against = choose(x < -kBelow, Doubles(-kBelowPenalty), 0.0);
+    sum += choose((x > -kSupport) & (x < kSupport), 1 - x * x / (kSupport * kSupport), against);
   }
   return sum;
 }
 
 }  // namespace
 
-std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
+std::size_t bestOf(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
   std::vector<double> supports;
   for (std::size_t first = 0; first < planes.size(); first += kDoubleLanes) {
     PlaneLanes four{};
     const std::size_t count = std::min(kDoubleLanes, planes.size() - first);
     for (std::size_t lane = 0; lane < count; ++lane) {
       setLane(four.normal_cam, lane, planes[first + lane].normal_cam);
-      four.height_m[lane] = planes[first + lane].height_m;
+      four.height_m.set(static_cast<int>(lane), planes[first + lane].height_m);
     }
     const Doubles sums = support(points, four);
-    for (std::size_t lane = 0; lane < count; ++lane) supports.push_back(sums[lane]);
+    for (std::size_t lane = 0; lane < count; ++lane) supports.push_back(sums[static_cast<int>(lane)]);
   }
   return static_cast<std::size_t>(std::ranges::max_element(supports) - supports.begin());
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(bestOf);
+
+std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
+  return MOTORCADE_KERNEL(bestOf)(planes, points);
+}
+
 }  // namespace motorcade
+#endif

@@ -5,10 +5,16 @@
 #include <limits>
 #include <span>
 
+#include "core/instruction_set.hpp"
 #include "frontend/geometry/cholesky.hpp"
+
+#define HWY_TARGET_INCLUDE "frontend/motion/scene_flow.cpp"
+#include <hwy/foreach_target.h>
+
 #include "frontend/geometry/stereo_view.hpp"
 
-namespace motorcade {
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr double kConverged_chi2 = 1e-2;  // a step that gains less is the last
@@ -40,7 +46,7 @@ struct TrackWindow {
     Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
     set(o, lane, observation, relation, jitter_px2);
     if (lane == 0) o.count = Doubles{};
-    o.count[lane] = 1;
+    o.count.set(static_cast<int>(lane), 1);
     ++size;
   }
   /// To be called after the last observation.
@@ -48,7 +54,7 @@ struct TrackWindow {
     const std::size_t used = static_cast<std::size_t>(size) % kDoubleLanes;
     if (used == 0) return;
     Observations& o = observations[static_cast<std::size_t>(size) / kDoubleLanes];
-    for (std::size_t unused = used; unused < kDoubleLanes; ++unused) copyFirst(o, unused);
+    for (std::size_t unused = used; unused < kDoubleLanes; ++unused) copyFirst(o, static_cast<int>(unused));
   }
 
  private:
@@ -61,12 +67,12 @@ struct TrackWindow {
     setLane(o.t_then_now_m, lane, relation.T_then_now.translation());
     setLane(o.uvd_px, lane, observation.uvd_px.cast<double>());
     setLane(o.variance_px2, lane, observation.sigma_px.cast<double>().array().square() + jitter_px2);
-    o.dt_s[lane] = relation.dt_s;
+    o.dt_s.set(static_cast<int>(lane), relation.dt_s);
   }
-  static void copyFirst(Observations& o, std::size_t lane) {
+  static void copyFirst(Observations& o, int lane) {
     for (Doubles3* v : {&o.R_then_now.x, &o.R_then_now.y, &o.R_then_now.z, &o.t_then_now_m, &o.uvd_px, &o.variance_px2})
-      v->x[lane] = v->x[0], v->y[lane] = v->y[0], v->z[lane] = v->z[0];
-    o.dt_s[lane] = o.dt_s[0];
+      v->x.set(lane, v->x[0]), v->y.set(lane, v->y[0]), v->z.set(lane, v->z[0]);
+    o.dt_s.set(lane, o.dt_s[0]);
   }
 };
 
@@ -96,7 +102,7 @@ LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3
 }
 
 LinearizedPoint linearizeAtRest(const Observations& o, const StereoViews& view, double huber_sigmas) {
-  const Doubles one = allDoubles(1.0);
+  const Doubles one = 1.0;
   const Doubles3 W{one / o.variance_px2.x, one / o.variance_px2.y, one / o.variance_px2.z}, r = o.uvd_px - view.uvd_px;
   return weigh(o, view.J, scaledRows(W, view.J), r, scaledRows(W, r), huber_sigmas);
 }
@@ -203,19 +209,32 @@ std::optional<SceneFlow> fitMoving(const StereoCamera& camera, const TrackWindow
 
 }  // namespace
 
-SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
-  const Eigen::Vector3d start = camera_.triangulate(track.newest().uvd_px.cast<double>());
-  int n = std::min(params_.max_observations, track.count);
-  TrackWindow window = collect(track, trail, params_.pose_jitter_px, n);
-  Fits fits{.at_rest = fitStatic(camera_, window, start, params_),
-            .moving = fitMoving(camera_, window, start, params_)};
-  while (!fits.moving && (n = shorterWindow(n)) >= params_.min_observations) {
-    window = collect(track, trail, params_.pose_jitter_px, n);
-    fits.moving = fitMoving(camera_, window, start, params_);
+SceneFlowEstimator::Fits fitBoth(const SceneFlowEstimator::Params& params, const StereoCamera& camera,
+                                 const PointTrack& track, const CameraTrail& trail) {
+  const Eigen::Vector3d start = camera.triangulate(track.newest().uvd_px.cast<double>());
+  int n = std::min(params.max_observations, track.count);
+  TrackWindow window = collect(track, trail, params.pose_jitter_px, n);
+  SceneFlowEstimator::Fits fits{.at_rest = fitStatic(camera, window, start, params),
+                                .moving = fitMoving(camera, window, start, params)};
+  while (!fits.moving && (n = shorterWindow(n)) >= params.min_observations) {
+    window = collect(track, trail, params.pose_jitter_px, n);
+    fits.moving = fitMoving(camera, window, start, params);
   }
   if (fits.moving)
     fits.moving->static_chi2 = fits.at_rest ? fits.at_rest->chi2 : std::numeric_limits<double>::infinity();
   return fits;
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(fitBoth);
+
+SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
+  return MOTORCADE_KERNEL(fitBoth)(params_, camera_, track, trail);
 }
 
 std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params) {
@@ -227,3 +246,4 @@ std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params) {
 }
 
 }  // namespace motorcade
+#endif

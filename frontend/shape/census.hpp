@@ -31,7 +31,6 @@ class Census {
 
  private:
   std::size_t at(int v) const { return static_cast<std::size_t>(v) * stride_ + room_; }
-  void computeLanes(int u, int v);
 
   std::size_t stride_ = 0, room_ = 0, stride_around_ = 0;
   std::array<std::vector<std::uint8_t>, kBytes> planes_;

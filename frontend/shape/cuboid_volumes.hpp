@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include "frontend/image/float_lanes.hpp"
 #include "frontend/shape/outline.hpp"
 
 namespace motorcade {
@@ -30,8 +29,6 @@ class CuboidVolumes {
   /// would have to be wrong by more than twice `sigma_px` [px of the level].
   void tell(double sigma_px, std::span<std::uint8_t> cells) const;
 
- private:
-  using Points = std::array<Floats, 3>;
   struct Cuboid {
     Eigen::Vector3f least, most;
   };
@@ -40,22 +37,23 @@ class CuboidVolumes {
     Eigen::Vector3f origin;  // of the camera, in the body frame
     Cuboid cuboid;
   };
+  struct Geometry {
+    float scale, offset_px, fb, least_px = 0, most_px = 0;
+    Eigen::Vector2f first_ray, ray_step;  // of the first cell; from a column or row to the next
+    Eigen::Vector3f ground_normal;
+    float ground_height_m;
+    Eigen::Matrix3f R_body_cam;
+    Eigen::Vector3f origin;  // of the camera, in the body frame
+    Cuboid possible{}, usual{};
+    std::vector<Other> others{};
+  };
+
+ private:
   void boundDisparities(const ObjectView& view, const StereoCamera& camera);
   void addOthers(const ObjectView& view, const StereoCamera& camera);
-  FloatMask mayBe(const Cuboid& cuboid, const Points& inverse_directions, const Floats& nearest,
-                  const Floats& farthest) const;
-  FloatMask areOthers(const Points& p_cam) const;
-  void tellLanes(const Points& rays, float slack_per_m, const Floats& disparities_px, std::uint8_t* cells) const;
 
   const LevelDisparities& disparities_;
-  float scale_, offset_px_, fb_, least_px_ = 0, most_px_ = 0;
-  Eigen::Vector2f first_ray_, ray_step_;  // of the first cell; from a column or row to the next
-  Eigen::Vector3f ground_normal_;
-  float ground_height_m_;
-  Cuboid possible_, usual_;
-  Eigen::Matrix3f R_body_cam_;
-  Eigen::Vector3f origin_;  // of the camera, in the body frame
-  std::vector<Other> others_;
+  Geometry geometry_;
 };
 
 }  // namespace motorcade

@@ -5,11 +5,73 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "frontend/image/byte_lanes.hpp"
+#include "core/instruction_set.hpp"
 #include "frontend/shape/parabola.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/shape/dense_disparity.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
+
+/// Of kByteLanes pixels, the disparity of the least sum; the first of several. The sums of each disparity are `stride`
+/// after those of the one before.
+Bytes bestOf(const std::uint8_t* sums, std::ptrdiff_t stride, int disparities) {
+  Bytes least = load(sums), best{}, disparity{};
+  for (int d = 1; d < disparities; ++d) {
+    sums += stride, disparity += 1;
+    const Bytes less = lesser(load(sums), least);
+    best = choose(less == least, best, disparity);
+    least = less;
+  }
+  return best;
+}
+
+}  // namespace
+
+using CensusBytes = std::array<const std::uint8_t*, Census::kBytes>;
+
+/// Hamming distances of kByteLanes pixels to those of the right image, which are one pixel to the left for each
+/// disparity.
+void compareBlock(const CensusBytes& left, CensusBytes right, int disparities, std::uint8_t* costs) {
+  std::array<Bytes, Census::kBytes> of_left;
+  for (int byte = 0; byte < Census::kBytes; ++byte) of_left[byte] = load(left[byte]);
+  for (int d = 0; d < disparities; ++d, costs += kByteLanes) {
+    Bytes different{};
+    for (int byte = 0; byte < Census::kBytes; ++byte) different += bitCounts(load(right[byte]--) ^ of_left[byte]);
+    store(costs, different);
+  }
+}
+
+/// The best disparities of a row.
+void bestOfRow(const std::uint8_t* sums, std::ptrdiff_t stride, int disparities, int width, std::uint8_t* best) {
+  for (int column = 0; column < width; column += kByteLanes)
+    store(best + column, bestOf(sums + column, stride, disparities));
+}
+
+/// Copies the sums of a block, each disparity to a row of its own.
+void gatherBlock(const std::uint8_t* sums, const std::uint8_t* beyond, int disparities, std::uint8_t* out,
+                 std::ptrdiff_t stride) {
+  const Bytes bits = load(beyond);
+  for (int d = 0; d < disparities; ++d) store(out + d * stride, load(sums + d * kByteLanes) | bits);
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(compareBlock);
+HWY_EXPORT(bestOfRow);
+HWY_EXPORT(gatherBlock);
+
+namespace {
+
+constexpr int kByteLanes = DisparityBlocks::kBlock;
 
 static_assert(Census::kMostDifferent <= PathCosts::kMostCost);
 constexpr std::uint8_t kUnknownCost = 12;  // of a pixel without counterpart: as of one picked at random
@@ -17,19 +79,6 @@ constexpr int kMostDisparities = 200;      // whose numbers fit a byte
 constexpr int kMaxRoundTrip_px = 1;
 constexpr int kLeastTexture = 10;  // gray levels between the brightest and the darkest of a 5x5 window: without
                                    // texture, a disparity is but its neighbors'
-
-/// Of kByteLanes pixels, the disparity of the least sum; the first of several. The sums of each disparity are `stride`
-/// after those of the one before.
-Bytes bestOf(const std::uint8_t* sums, std::ptrdiff_t stride, int disparities) {
-  Bytes least = loadBytes(sums), best{}, disparity{};
-  for (int d = 1; d < disparities; ++d) {
-    sums += stride, disparity += 1;
-    const Bytes less = lesser(loadBytes(sums), least), same = Bytes(less == least);
-    best = (same & best) | (~same & disparity);
-    least = less;
-  }
-  return best;
-}
 
 }  // namespace
 
@@ -63,20 +112,15 @@ DisparityMap DenseDisparity::operator()(const Image& left, const Image& right, P
 
 void DenseDisparity::fillCosts() {
   costs_.resize(window_.height, window_.width, range_.count);
+  const auto compare = MOTORCADE_KERNEL(compareBlock);
   for (int row = 0; row < window_.height; ++row) {
     for (int block = 0; block < costs_.blocks(); ++block) {
-      std::array<Bytes, Census::kBytes> left;
-      std::array<const std::uint8_t*, Census::kBytes> right;
+      std::array<const std::uint8_t*, Census::kBytes> left, right;
       for (int byte = 0; byte < Census::kBytes; ++byte) {
-        left[byte] = loadBytes(left_.row(byte, row) + block * kByteLanes);
+        left[byte] = left_.row(byte, row) + block * kByteLanes;
         right[byte] = right_.row(byte, row) + inRight(block * kByteLanes);
       }
-      std::uint8_t* costs = costs_.at(row, block);
-      for (int d = 0; d < range_.count; ++d, costs += kByteLanes) {
-        Bytes different{};
-        for (int byte = 0; byte < Census::kBytes; ++byte) different += bitCounts(loadBytes(right[byte]--) ^ left[byte]);
-        storeBytes(costs, different);
-      }
+      compare(left, right, range_.count, costs_.at(row, block));
     }
     for (int d = 0; d < range_.count; ++d) markUnknown(costs_.at(row, 0), d);
   }
@@ -96,12 +140,11 @@ void DenseDisparity::markUnknown(std::uint8_t* costs_of_row, int disparity) cons
 void DenseDisparity::choose(int row, DisparityMap& map) {
   gatherRow(row);
   best_.resize(beyond_.size());
-  for (int column = 0; column < window_.width; column += kByteLanes)
-    storeBytes(best_.data() + column, bestOf(sums_of_row_.data() + inSums(0) + column, stride_of_sums_, range_.count));
+  const auto findBest = MOTORCADE_KERNEL(bestOfRow);
+  findBest(sums_of_row_.data() + inSums(0), stride_of_sums_, range_.count, window_.width, best_.data());
   best_of_right_.resize(right_width_ + kByteLanes);
-  for (int column = 0; column < right_width_; column += kByteLanes)
-    storeBytes(best_of_right_.data() + column,
-               bestOf(sums_of_row_.data() + inSums(0) - inRight(0) + column, stride_of_sums_ + 1, range_.count));
+  findBest(sums_of_row_.data() + inSums(0) - inRight(0), stride_of_sums_ + 1, range_.count, right_width_,
+           best_of_right_.data());
   const std::uint8_t* texture = left_.texture(row);
   float* disparities_px = map.disparity_px.data() + static_cast<std::size_t>(row) * window_.width;
   for (int column = 0; column < window_.width; ++column) {
@@ -117,12 +160,11 @@ void DenseDisparity::choose(int row, DisparityMap& map) {
 
 /// The sums of a row, which more than any stand around.
 void DenseDisparity::gatherRow(int row) {
-  for (int block = 0; block < sums_.blocks(); ++block) {
-    const Bytes beyond = loadBytes(beyond_.data() + block * kByteLanes);
-    const std::uint8_t* sums = sums_.at(row, block);
-    for (int d = 0; d < range_.count; ++d, sums += kByteLanes)
-      storeBytes(sums_of_row_.data() + inSums(d) + block * kByteLanes, loadBytes(sums) | beyond);
-  }
+  const auto gather = MOTORCADE_KERNEL(gatherBlock);
+  for (int block = 0; block < sums_.blocks(); ++block)
+    gather(sums_.at(row, block), beyond_.data() + block * kByteLanes, range_.count,
+           sums_of_row_.data() + inSums(0) + block * kByteLanes, stride_of_sums_);
 }
 
 }  // namespace motorcade
+#endif

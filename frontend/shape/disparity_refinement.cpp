@@ -6,11 +6,17 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "core/instruction_set.hpp"
 #include "frontend/image/window_differences.hpp"
-#include "frontend/image/word_lanes.hpp"
 #include "frontend/shape/parabola.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/shape/disparity_refinement.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr WindowSize kSize = kHalfSizeWindow;
@@ -20,9 +26,8 @@ static_assert(kSize.columns + kWindows - 1 <= kWordLanes);
 
 /// Ones at the columns of a window that lies so far to the right.
 Words columnsAt(int first) {
-  Words ones{};
-  for (int i = 0; i < kSize.columns; ++i) ones[first + i] = 1;
-  return ones;
+  const Words column = wordNumbers() - allWords(first);
+  return (column > allWords(-1)) & (column < allWords(kSize.columns)) & allWords(1);
 }
 
 /// Compares a window with a few of another image: what `windowDifferences` does for many at a time. The columns of a
@@ -36,8 +41,7 @@ class NearDifferences {
       rows_[r] = wordPixels(window.image.row(window.v - kSize.rows / 2 + r) + window.u - kSize.columns / 2);
       columns += rows_[r];
     }
-    const WordSums sum = products(columns, columns_[0]);
-    sum_ = totals(sum, sum, sum, sum)[0];
+    sum_ = total(products(columns, columns_[0]));
   }
 
   /// Of neighboring windows; the first pixel of the first is at `from`.
@@ -54,7 +58,7 @@ class NearDifferences {
  private:
   static std::array<int, kWindows> totalsOf(const std::array<WordSums, kWindows>& sums) {
     const FourSums four = totals(sums[0], sums[1], sums[2], sums[3]);
-    return {four[0], four[1], four[2], four[3], totals(sums[4], sums[4], sums[4], sums[4])[0]};
+    return {four[0], four[1], four[2], four[3], total(sums[4])};
   }
   /// Of differences after their mean is taken out to a whole gray level; `sum`: of the differences.
   WordSums sumOfMagnitudes(const std::uint8_t* from, std::ptrdiff_t stride, int sum) const {
@@ -80,8 +84,7 @@ int firstLeast(const std::array<int, kWindows>& costs) {
 
 }  // namespace
 
-void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells,
-                       DisparityMap& map) {
+void refineAll(const Image& left, const Image& right, int scale, std::span<const int> cells, DisparityMap& map) {
   constexpr int kHalf = kSize.columns / 2;
   for (const int cell : cells) {
     float& disparity_px = map.disparity_px[cell];
@@ -99,4 +102,18 @@ void refineDisparities(const Image& left, const Image& right, int scale, std::sp
   }
 }
 
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(refineAll);
+
+void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells,
+                       DisparityMap& map) {
+  MOTORCADE_KERNEL(refineAll)(left, right, scale, cells, map);
+}
+
 }  // namespace motorcade
+#endif

@@ -1,58 +1,116 @@
 #include "frontend/shape/motion_evidence.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <limits>
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
-namespace motorcade {
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "frontend/shape/motion_evidence.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr float kLeastShift = 1.5F;  // cells between where the body's motion and rest take a point
-constexpr int kLeastDifference = 5;  // gray levels by which rest explains the brightness better
-constexpr int kAround = 2;           // cells on each side, that together tell whether one rests
+
+using Geometry = MotionEvidence::Geometry;
+
+/// Places of cells in the frame before, and their depths there.
+struct Places {
+  Floats u, v, depth_m;
+};
 
 bool has3x3(const Image& image, int u, int v) {
   return u >= 1 && v >= 1 && u + 1 < image.width() && v + 1 < image.height();
 }
 
 /// The 3x3 pixels around a place of an image, to be compared with others.
-class Pixels3x3 {
- public:
-#ifdef __SSE2__
-  Pixels3x3(const Image& image, int u, int v) {
-    const auto row = [&](int y) {
-      std::uint32_t pixels = 0;  // and one that does not count: behind an image's last row, too, bytes may be read
-      std::memcpy(&pixels, image.row(y) + u - 1, sizeof pixels);
-      return pixels & 0xFFFFFFU;
-    };
-    pixels_ = _mm_set_epi64x(static_cast<std::int64_t>(row(v + 1)),
-                             static_cast<std::int64_t>(row(v) | static_cast<std::uint64_t>(row(v - 1)) << 32));
-  }
-  int differenceFrom(const Pixels3x3& other) const {
-    const __m128i sums = _mm_sad_epu8(pixels_, other.pixels_);
-    return _mm_cvtsi128_si32(_mm_add_epi32(sums, _mm_unpackhi_epi64(sums, sums)));
-  }
+SixteenBytes pixels3x3(const Image& image, int u, int v) {
+  const auto row = [&](int y) HWY_ATTR {
+    std::uint32_t pixels = 0;  // and one that does not count: behind an image's last row, too, bytes may be read
+    std::memcpy(&pixels, image.row(y) + u - 1, sizeof pixels);
+    return pixels & 0xFFFFFFU;
+  };
+  using Rows = std::uint32_t __attribute__((vector_size(16)));
+  return SixteenBytes(Rows{row(v - 1), row(v), row(v + 1), 0});
+}
 
- private:
-  __m128i pixels_;
-#else
-  Pixels3x3(const Image& image, int u, int v) {
-    for (int y = 0; y < 3; ++y) std::copy_n(image.row(v + y - 1) + u - 1, 3, pixels_.data() + 3 * y);
-  }
-  int differenceFrom(const Pixels3x3& other) const {
-    int sum = 0;
-    for (std::size_t i = 0; i < pixels_.size(); ++i) sum += std::abs(pixels_[i] - other.pixels_[i]);
-    return sum;
-  }
+Places placesBefore(const Geometry& g, const MotionEvidence::Motion& motion, const std::array<Floats, 3>& p_cam) {
+  std::array<Floats, 3> p;
+  for (int i = 0; i < 3; ++i)
+    p[i] = motion.R(i, 0) * p_cam[0] + motion.R(i, 1) * p_cam[1] + motion.R(i, 2) * p_cam[2] + motion.t[i];
+  return {g.focal.x() * (p[0] / p[2]) + g.middle.x(), g.focal.y() * (p[1] / p[2]) + g.middle.y(), p[2]};
+}
 
- private:
-  std::array<std::uint8_t, 9> pixels_;
-#endif
-};
+/// Zero where one of the places is outside its image.
+int difference(const Geometry& g, int cell, const Places& moved, const Places& rested, int lane) {
+  // What is negative is outside in any case.
+  const auto nearest = [](float px) HWY_ATTR { return static_cast<int>(px + 0.5F); };
+  const PixelWindow& window = g.map.window;
+  const int u = window.u0 + cell % window.width, v = window.v0 + cell / window.width, slack = g.slack;
+  const int u_moved = nearest(moved.u[lane]), v_moved = nearest(moved.v[lane]);
+  const int u_rested = nearest(rested.u[lane]), v_rested = nearest(rested.v[lane]);
+  if (!has3x3(g.now, u, v) || !has3x3(g.before, u_moved - slack, v_moved - slack) ||
+      !has3x3(g.before, u_moved + slack, v_moved + slack) || !has3x3(g.before, u_rested - slack, v_rested - slack) ||
+      !has3x3(g.before, u_rested + slack, v_rested + slack))
+    return 0;
+  const SixteenBytes now = pixels3x3(g.now, u, v);
+  const auto least_around = [&](int u_before, int v_before) HWY_ATTR {
+    int least = std::numeric_limits<int>::max();
+    for (int j = -slack; j <= slack; ++j)
+      for (int i = -slack; i <= slack; ++i)
+        least = std::min(least, differenceOf(now, pixels3x3(g.before, u_before + i, v_before + j)));
+    return least;
+  };
+  return least_around(u_moved, v_moved) - least_around(u_rested, v_rested);
+}
+
+/// Up to kFloatLanes cells.
+void compare(const Geometry& g, std::span<const int> cells, std::int16_t* evidence) {
+  std::array<float, kFloatLanes> columns{}, rows{}, disparities_px;
+  disparities_px.fill(1);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    columns[i] = static_cast<float>(g.map.window.u0 + cells[i] % g.map.window.width);
+    rows[i] = static_cast<float>(g.map.window.v0 + cells[i] / g.map.window.width);
+    disparities_px[i] = g.map.disparity_px[cells[i]];
+  }
+  const Floats z = g.fb / (load(disparities_px.data()) * g.scale + g.offset_px);
+  const std::array<Floats, 3> p_cam{(load(columns.data()) - g.middle.x()) * (1 / g.focal.x()) * z,
+                                    (load(rows.data()) - g.middle.y()) * (1 / g.focal.y()) * z, z};
+  const Places moved = placesBefore(g, g.moved, p_cam), rested = placesBefore(g, g.rested, p_cam);
+  constexpr auto kNear_m = static_cast<float>(StereoCamera::kMinDepth_m);
+  const float least_shift = kLeastShift + static_cast<float>(2 * g.slack);
+  const Floats du = moved.u - rested.u, dv = moved.v - rested.v;
+  const unsigned tells = bitsOf((moved.depth_m >= kNear_m) & (rested.depth_m >= kNear_m) &
+                                (du * du + dv * dv >= least_shift * least_shift));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int lane = static_cast<int>(i);
+    evidence[i] = static_cast<std::int16_t>((tells >> i & 1) != 0 ? difference(g, cells[i], moved, rested, lane) : 0);
+  }
+}
+
+}  // namespace
+
+void compareAll(const Geometry& g, std::span<const int> cells, std::int16_t* evidence) {
+  for (std::size_t i = 0; i < cells.size(); i += kFloatLanes)
+    compare(g, cells.subspan(i, std::min<std::size_t>(kFloatLanes, cells.size() - i)), evidence + i);
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(compareAll);
+
+namespace {
+
+constexpr int kLeastDifference = 5;  // gray levels by which rest explains the brightness better
+constexpr int kAround = 2;           // cells on each side, that together tell whether one rests
 
 /// Sums over the cells up to kAround away of values of a window, row after row.
 class SumsAround {
@@ -93,84 +151,32 @@ class SumsAround {
   std::vector<std::int16_t> of_columns_;
 };
 
+MotionEvidence::Motion motionOf(const SE3& T_before_cam) {
+  return {T_before_cam.rotation().cast<float>(), T_before_cam.translation().cast<float>()};
+}
+
 }  // namespace
 
 MotionEvidence::MotionEvidence(const LevelDisparities& disparities, const ObjectView& view,
                                const ObjectView::Before& before, const StereoCamera& camera, int slack)
-    : map_(disparities.map),
-      now_(before.now->levels[disparities.level]),
-      before_(before.before->levels[disparities.level]),
-      slack_(slack),
-      scale_(static_cast<float>(1 << disparities.level)),
-      offset_px_(static_cast<float>(view.disparity_offset_px)),
-      fb_(static_cast<float>(camera.fx_px * camera.baseline_m)),
-      focal_(Eigen::Vector2d(camera.fx_px, camera.fy_px).cast<float>() / scale_),
-      middle_(toLevel(static_cast<float>(camera.cx_px), disparities.level),
-              toLevel(static_cast<float>(camera.cy_px), disparities.level)) {
-  const auto motion = [](const SE3& T_before_cam) {
-    return Motion{T_before_cam.rotation().cast<float>(), T_before_cam.translation().cast<float>()};
-  };
-  moved_ = motion(before.T_before_body * view.T_cam_body.inverse());
-  rested_ = motion(before.T_before_cam);
-}
+    : geometry_{.map = disparities.map,
+                .now = before.now->levels[disparities.level],
+                .before = before.before->levels[disparities.level],
+                .slack = slack,
+                .scale = static_cast<float>(1 << disparities.level),
+                .offset_px = static_cast<float>(view.disparity_offset_px),
+                .fb = static_cast<float>(camera.fx_px * camera.baseline_m),
+                .focal = Eigen::Vector2d(camera.fx_px, camera.fy_px).cast<float>() /
+                         static_cast<float>(1 << disparities.level),
+                .middle = {toLevel(static_cast<float>(camera.cx_px), disparities.level),
+                           toLevel(static_cast<float>(camera.cy_px), disparities.level)},
+                .moved = motionOf(before.T_before_body * view.T_cam_body.inverse()),
+                .rested = motionOf(before.T_before_cam)} {}
 
 std::vector<std::int16_t> MotionEvidence::operator()(std::span<const int> cells) const {
   std::vector<std::int16_t> evidence(cells.size());
-  for (std::size_t i = 0; i < cells.size(); i += kFloatLanes)
-    compare(cells.subspan(i, std::min<std::size_t>(kFloatLanes, cells.size() - i)), evidence.data() + i);
+  MOTORCADE_KERNEL(compareAll)(geometry_, cells, evidence.data());
   return evidence;
-}
-
-/// Up to kFloatLanes cells.
-void MotionEvidence::compare(std::span<const int> cells, std::int16_t* evidence) const {
-  Lanes columns{}, rows{}, disparities_px;
-  disparities_px.fill(1);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    columns[i] = static_cast<float>(map_.window.u0 + cells[i] % map_.window.width);
-    rows[i] = static_cast<float>(map_.window.v0 + cells[i] / map_.window.width);
-    disparities_px[i] = map_.disparity_px[cells[i]];
-  }
-  const Floats z = fb_ / (loadFloats(disparities_px.data()) * scale_ + offset_px_);
-  const std::array<Floats, 3> p_cam{(loadFloats(columns.data()) - middle_.x()) * (1 / focal_.x()) * z,
-                                    (loadFloats(rows.data()) - middle_.y()) * (1 / focal_.y()) * z, z};
-  const Places moved = before(moved_, p_cam), rested = before(rested_, p_cam);
-  constexpr auto kNear_m = static_cast<float>(StereoCamera::kMinDepth_m);
-  const float least_shift = kLeastShift + static_cast<float>(2 * slack_);
-  const Floats du = moved.u - rested.u, dv = moved.v - rested.v;
-  const FloatMask tells =
-      (moved.depth_m >= kNear_m) & (rested.depth_m >= kNear_m) & (du * du + dv * dv >= least_shift * least_shift);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const int lane = static_cast<int>(i);
-    evidence[i] = static_cast<std::int16_t>(tells[lane] != 0 ? difference(cells[i], moved, rested, lane) : 0);
-  }
-}
-
-MotionEvidence::Places MotionEvidence::before(const Motion& motion, const std::array<Floats, 3>& p_cam) const {
-  std::array<Floats, 3> p;
-  for (int i = 0; i < 3; ++i)
-    p[i] = motion.R(i, 0) * p_cam[0] + motion.R(i, 1) * p_cam[1] + motion.R(i, 2) * p_cam[2] + motion.t[i];
-  return {focal_.x() * (p[0] / p[2]) + middle_.x(), focal_.y() * (p[1] / p[2]) + middle_.y(), p[2]};
-}
-
-/// Zero where one of the places is outside its image.
-int MotionEvidence::difference(int cell, const Places& moved, const Places& rested, int lane) const {
-  const auto nearest = [](float px) { return static_cast<int>(px + 0.5F); };  // what is negative is outside in any case
-  const int u = map_.window.u0 + cell % map_.window.width, v = map_.window.v0 + cell / map_.window.width;
-  const int u_moved = nearest(moved.u[lane]), v_moved = nearest(moved.v[lane]);
-  const int u_rested = nearest(rested.u[lane]), v_rested = nearest(rested.v[lane]);
-  if (!has3x3(now_, u, v) || !has3x3(before_, u_moved - slack_, v_moved - slack_) ||
-      !has3x3(before_, u_moved + slack_, v_moved + slack_) || !has3x3(before_, u_rested - slack_, v_rested - slack_) ||
-      !has3x3(before_, u_rested + slack_, v_rested + slack_))
-    return 0;
-  const Pixels3x3 now(now_, u, v);
-  const auto least_around = [&](int u_before, int v_before) {
-    int least = std::numeric_limits<int>::max();
-    for (int j = -slack_; j <= slack_; ++j)
-      for (int i = -slack_; i <= slack_; ++i)
-        least = std::min(least, now.differenceFrom({before_, u_before + i, v_before + j}));
-    return least;
-  };
-  return least_around(u_moved, v_moved) - least_around(u_rested, v_rested);
 }
 
 /// Every other cell tells, as on a chessboard; one that is dropped no longer does, but what it told stands.
@@ -199,3 +205,4 @@ void dropResting(Outline& outline, const LevelDisparities& disparities, const Ob
 }
 
 }  // namespace motorcade
+#endif

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include "frontend/image/float_lanes.hpp"
 #include "frontend/shape/outline.hpp"
 
 namespace motorcade {
@@ -27,26 +26,22 @@ class MotionEvidence {
   /// can hardly be told apart. The cells are places in the map, and their disparities are known.
   std::vector<std::int16_t> operator()(std::span<const int> cells) const;
 
- private:
   /// Motion from rays at a depth to the image of the frame before [px of the level].
   struct Motion {
     Eigen::Matrix3f R;
     Eigen::Vector3f t;
   };
-  using Lanes = std::array<float, kFloatLanes>;
-  struct Places {
-    Floats u, v, depth_m;
+  struct Geometry {
+    const DisparityMap& map;
+    const Image &now, &before;
+    int slack;
+    float scale, offset_px, fb;
+    Eigen::Vector2f focal, middle;  // of the level
+    Motion moved, rested;
   };
-  Places before(const Motion& motion, const std::array<Floats, 3>& p_cam) const;
-  void compare(std::span<const int> cells, std::int16_t* evidence) const;
-  int difference(int cell, const Places& moved, const Places& rested, int lane) const;
 
-  const DisparityMap& map_;
-  const Image &now_, &before_;
-  int slack_;
-  float scale_, offset_px_, fb_;
-  Eigen::Vector2f focal_, middle_;  // of the level
-  Motion moved_, rested_;
+ private:
+  Geometry geometry_;
 };
 
 /// Drops cells around which the brightness rests rather than moves with the body. `view.before` is known.

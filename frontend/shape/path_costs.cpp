@@ -4,9 +4,15 @@
 #include <cstring>
 #include <utility>
 
-#include "frontend/image/byte_lanes.hpp"
+#include "core/instruction_set.hpp"
 
-namespace motorcade {
+#define HWY_TARGET_INCLUDE "frontend/shape/path_costs.cpp"
+#include <hwy/foreach_target.h>
+
+#include "frontend/image/pixel_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 namespace {
 
 constexpr std::uint8_t kStep = 5;   // penalty for a change of the disparity by one, along a path
@@ -20,13 +26,13 @@ enum class Sum { kStart, kContinue };
 template <Sum kSum>
 Bytes stepAlong(std::uint8_t* path, const Bytes& least, const std::uint8_t* costs, std::uint8_t* sums,
                 int disparities) {
-  Bytes below = allBytes(PathCosts::kFar), same = loadBytes(path) - least, least_yet = allBytes(PathCosts::kFar);
+  Bytes below = PathCosts::kFar, same = load(path) - least, least_yet = PathCosts::kFar;
   for (int d = 0; d < disparities; ++d, path += kByteLanes, costs += kByteLanes, sums += kByteLanes) {
-    const Bytes above = loadBytes(path + kByteLanes) - least;
-    const Bytes way = lesser(lesser(lesser(below, above) + kStep, same), allBytes(kJump));
-    const Bytes next = loadBytes(costs) + way;
-    storeBytes(path, next);
-    storeBytes(sums, kSum == Sum::kStart ? next : Bytes(loadBytes(sums) + next));
+    const Bytes above = load(path + kByteLanes) - least;
+    const Bytes way = lesser(lesser(lesser(below, above) + kStep, same), kJump);
+    const Bytes next = load(costs) + way;
+    store(path, next);
+    store(sums, kSum == Sum::kStart ? next : load(sums) + next);
     least_yet = lesser(least_yet, next);
     below = same, same = above;
   }
@@ -64,9 +70,8 @@ struct TilePlace {
 template <Sum kSum>
 void transposeTiles(const DisparityBlocks& from, TilePlace place, DisparityBlocks& to) {
   for (int d = 0; d < from.disparities(); ++d) {
-    const auto at = [d](auto& blocks, int line, int pixel) {
-      return blocks.at(line, pixel / kByteLanes) + d * kByteLanes + pixel % kByteLanes;
-    };
+    const auto at = [d](auto& blocks, int line, int pixel)
+                        HWY_ATTR { return blocks.at(line, pixel / kByteLanes) + d * kByteLanes + pixel % kByteLanes; };
     Tile tile;
     for (int i = 0; i < kTile; ++i) std::memcpy(&tile[i], at(from, place.line + i, place.pixel), kTile);
     transpose(tile);
@@ -87,39 +92,52 @@ void transpose(const DisparityBlocks& from, DisparityBlocks& to) {
     for (int pixel = 0; pixel < from.pixels(); pixel += kTile) transposeTiles<kSum>(from, {line, pixel}, to);
 }
 
+/// Along the paths from the first line to the last and back.
+void sumAcrossLines(const DisparityBlocks& costs, std::vector<std::uint8_t>& path, DisparityBlocks& sums) {
+  const int disparities = costs.disparities();
+  for (int block = 0; block < costs.blocks(); ++block) {
+    path.assign(static_cast<std::size_t>(kByteLanes) * (disparities + 1), 0);
+    store(path.data() + static_cast<std::ptrdiff_t>(kByteLanes) * disparities, PathCosts::kFar);
+    Bytes least{};
+    for (int line = 0; line < costs.lines(); ++line)
+      least = stepAlong<Sum::kStart>(path.data(), least, costs.at(line, block), sums.at(line, block), disparities);
+    std::fill(path.data(), path.data() + static_cast<std::ptrdiff_t>(kByteLanes) * disparities, 0);
+    least = Bytes{};
+    for (int line = costs.lines() - 1; line >= 0; --line)
+      least = stepAlong<Sum::kContinue>(path.data(), least, costs.at(line, block), sums.at(line, block), disparities);
+  }
+}
+
 }  // namespace
 
+void sumAlongPaths(const DisparityBlocks& costs, PathCosts::Buffers& buffers, DisparityBlocks& sums) {
+  sumAcrossLines(costs, buffers.path, sums);
+  transpose<Sum::kStart>(costs, buffers.costs_of_columns);
+  sumAcrossLines(buffers.costs_of_columns, buffers.path, buffers.sums_of_columns);
+  transpose<Sum::kContinue>(buffers.sums_of_columns, sums);
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(sumAlongPaths);
+
 void DisparityBlocks::resize(int lines, int pixels, int disparities) {
-  const auto blocksFor = [](int count) { return (count + kByteLanes - 1) / kByteLanes; };
+  const auto blocksFor = [](int count) { return (count + kBlock - 1) / kBlock; };
   lines_ = lines, pixels_ = pixels, blocks_ = blocksFor(pixels), disparities_ = disparities;
-  block_size_ = static_cast<std::size_t>(kByteLanes) * disparities;
-  bytes_.resize(offset(blocksFor(lines) * kByteLanes, 0));
+  block_size_ = static_cast<std::size_t>(kBlock) * disparities;
+  bytes_.resize(offset(blocksFor(lines) * kBlock, 0));
 }
 
 void PathCosts::sum(const DisparityBlocks& costs, DisparityBlocks& sums) {
   sums.resize(costs.lines(), costs.pixels(), costs.disparities());
-  costs_of_columns_.resize(costs.pixels(), costs.lines(), costs.disparities());
-  sums_of_columns_.resize(costs.pixels(), costs.lines(), costs.disparities());
-  sumAcrossLines(costs, sums);
-  transpose<Sum::kStart>(costs, costs_of_columns_);
-  sumAcrossLines(costs_of_columns_, sums_of_columns_);
-  transpose<Sum::kContinue>(sums_of_columns_, sums);
-}
-
-/// Along the paths from the first line to the last and back.
-void PathCosts::sumAcrossLines(const DisparityBlocks& costs, DisparityBlocks& sums) {
-  const int disparities = costs.disparities();
-  for (int block = 0; block < costs.blocks(); ++block) {
-    path_.assign(static_cast<std::size_t>(kByteLanes) * (disparities + 1), 0);
-    storeBytes(path_.data() + static_cast<std::ptrdiff_t>(kByteLanes) * disparities, allBytes(kFar));
-    Bytes least{};
-    for (int line = 0; line < costs.lines(); ++line)
-      least = stepAlong<Sum::kStart>(path_.data(), least, costs.at(line, block), sums.at(line, block), disparities);
-    std::fill(path_.data(), path_.data() + static_cast<std::ptrdiff_t>(kByteLanes) * disparities, 0);
-    least = Bytes{};
-    for (int line = costs.lines() - 1; line >= 0; --line)
-      least = stepAlong<Sum::kContinue>(path_.data(), least, costs.at(line, block), sums.at(line, block), disparities);
-  }
+  buffers_.costs_of_columns.resize(costs.pixels(), costs.lines(), costs.disparities());
+  buffers_.sums_of_columns.resize(costs.pixels(), costs.lines(), costs.disparities());
+  MOTORCADE_KERNEL(sumAlongPaths)(costs, buffers_, sums);
 }
 
 }  // namespace motorcade
+#endif

@@ -7,11 +7,12 @@
 namespace motorcade {
 
 /// A byte for each disparity of each pixel of a window. Pixels side by side on a line (a row of the window, or a
-/// column) make blocks of kByteLanes, and a block has its disparities one after the other. So vector arithmetic never
-/// crosses lanes. Blocks are full, and lines exist up to a multiple of kByteLanes; what is beyond the window may hold
+/// column) make blocks of kBlock, and a block has its disparities one after the other. So vector arithmetic never
+/// crosses lanes. Blocks are full, and lines exist up to a multiple of kBlock; what is beyond the window may hold
 /// anything.
 class DisparityBlocks {
  public:
+  static constexpr int kBlock = 32;
   void resize(int lines, int pixels, int disparities);
   int lines() const { return lines_; }
   int pixels() const { return pixels_; }
@@ -39,11 +40,13 @@ class PathCosts {
   /// Sums along the four directions of rows and columns; lines of the costs are rows.
   void sum(const DisparityBlocks& costs, DisparityBlocks& sums);
 
- private:
-  void sumAcrossLines(const DisparityBlocks& costs, DisparityBlocks& sums);
+  struct Buffers {
+    std::vector<std::uint8_t> path;
+    DisparityBlocks costs_of_columns, sums_of_columns;
+  };
 
-  std::vector<std::uint8_t> path_;
-  DisparityBlocks costs_of_columns_, sums_of_columns_;
+ private:
+  Buffers buffers_;
 };
 
 }  // namespace motorcade

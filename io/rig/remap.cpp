@@ -7,37 +7,23 @@
 #include <cmath>
 #include <cstring>
 
-namespace motorcade {
-namespace {
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "io/rig/remap.cpp"
+#include <hwy/foreach_target.h>
+
+#include "core/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 
 constexpr int kOne = 1 << Remap::kFractionBits;
 static_assert(std::endian::native == std::endian::little);  // the left one of two pixels lies in the low byte
 constexpr int kBlock = 32;                                  // pixels at a time: arrays of this length become vectors
 
-/// A position along one axis: the first of two pixels, and the share of the second in 64ths.
-struct Place {
-  std::int16_t first;
-  std::uint8_t share;
-  bool inside;  // of the image, else the nearest place in it
-};
-
-Place placed(double position_px, int size) {
-  const int last = kOne * (size - 1);
-  const double exact = std::floor(kOne * position_px + 0.5);
-  const auto fixed = static_cast<int>(std::clamp<double>(exact, 0, last));
-  const int first = std::min(fixed / kOne, size - 2);
-  return {static_cast<std::int16_t>(first), static_cast<std::uint8_t>(fixed - kOne * first), exact == fixed};
-}
-
-/// Source positions of the pixels of a block; see Remap.
-struct Sources {
-  const std::int16_t *x, *y;
-  const std::uint8_t *right, *down;
-};
-
 /// Weighs four neighbors for each pixel of a block. Only the gathering goes pixel by pixel; the two neighbors in a row
 /// are taken at once.
-void weighBlock(const std::uint8_t* raw, int stride, const Sources& from, std::uint8_t* out) {
+void weighBlock(const std::uint8_t* raw, int stride, const Remap::Sources& from, std::uint8_t* out) {
   std::array<std::int32_t, kBlock> offsets;
   for (int i = 0; i < kBlock; ++i) offsets[i] = from.y[i] * stride + from.x[i];
   std::array<std::uint16_t, kBlock> upper, lower;
@@ -57,6 +43,33 @@ void weighBlock(const std::uint8_t* raw, int stride, const Sources& from, std::u
     const int sum = above[i] * (kOne - from.down[i]) + below[i] * from.down[i];
     out[i] = static_cast<std::uint8_t>((sum + kOne * kOne / 2) >> (2 * Remap::kFractionBits));
   }
+}
+
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade {
+
+HWY_EXPORT(weighBlock);
+
+namespace {
+
+using HWY_NAMESPACE::kBlock, HWY_NAMESPACE::kOne;
+
+/// A position along one axis: the first of two pixels, and the share of the second in 64ths.
+struct Place {
+  std::int16_t first;
+  std::uint8_t share;
+  bool inside;  // of the image, else the nearest place in it
+};
+
+Place placed(double position_px, int size) {
+  const int last = kOne * (size - 1);
+  const double exact = std::floor(kOne * position_px + 0.5);
+  const auto fixed = static_cast<int>(std::clamp<double>(exact, 0, last));
+  const int first = std::min(fixed / kOne, size - 2);
+  return {static_cast<std::int16_t>(first), static_cast<std::uint8_t>(fixed - kOne * first), exact == fixed};
 }
 
 }  // namespace
@@ -93,6 +106,7 @@ void Remap::fillRow(int v, const LensModel& lens, const Eigen::Matrix3d& R, cons
 Image Remap::operator()(const Image& raw, ImagePool& pool) const {
   assert(raw.width() == raw_size_.width && raw.height() == raw_size_.height);
   Image result = pool.acquire(size_.width, size_.height);
+  const auto weigh = MOTORCADE_KERNEL(weighBlock);
   std::array<std::uint8_t, kBlock> last;
   for (int v = 0; v < size_.height; ++v) {
     const std::size_t row = static_cast<std::size_t>(v) * size_.width;
@@ -100,8 +114,8 @@ Image Remap::operator()(const Image& raw, ImagePool& pool) const {
     for (int u = 0; u < size_.width; u += kBlock) {
       const std::size_t at = row + u;
       const int count = std::min(kBlock, size_.width - u);
-      weighBlock(raw.data(), raw.stride(), {&x_[at], &y_[at], &right_[at], &down_[at]},
-                 count == kBlock ? out + u : last.data());
+      weigh(raw.data(), raw.stride(), {&x_[at], &y_[at], &right_[at], &down_[at]},
+            count == kBlock ? out + u : last.data());
       if (count < kBlock) std::copy_n(last.begin(), count, out + u);
     }
   }
@@ -117,3 +131,4 @@ Eigen::Vector2d Remap::source_px(int u, int v) const {
 }
 
 }  // namespace motorcade
+#endif

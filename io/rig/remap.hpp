@@ -32,12 +32,17 @@ class Remap {
   /// in 32 bits. The error of at most 1/128 px is a tenth of a match's uncertainty.
   static constexpr int kFractionBits = 6;
 
+  /// Where pixels come from: the upper left of the four that are weighed, and how far right and down of it, in 64ths.
+  struct Sources {
+    const std::int16_t *x, *y;
+    const std::uint8_t *right, *down;
+  };
+
  private:
   void fillRow(int v, const LensModel& lens, const Eigen::Matrix3d& R, const StereoCamera& target);
 
   ImageSize raw_size_, size_;
   std::size_t outside_ = 0;
-  /// Upper left of the four pixels that are weighed, and the offset to the right and down from it, in 64ths.
   std::vector<std::int16_t> x_, y_;
   std::vector<std::uint8_t> right_, down_;
 };

@@ -1,6 +1,7 @@
 #include "core/instruction_set.hpp"
 
-#include <array>
+#include <cstdlib>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,15 +9,43 @@
 namespace motorcade {
 namespace {
 
-using testing::ElementsAre;
+class InstructionSet : public testing::Test {
+ protected:
+  ~InstructionSet() override { choose(nullptr); }
+  static void choose(const char* name) {
+    if (name != nullptr)
+      setenv("MOTORCADE_INSTRUCTIONS", name, 1);
+    else
+      unsetenv("MOTORCADE_INSTRUCTIONS");
+    chooseInstructions();
+  }
+};
 
-TEST(InstructionSet, KernelsAreTakenAsTheProcessorAllows) {
-  int any = 0, v3 = 0;
-  std::array<void*, 3> chosen{&any, &any, &any};
-  const std::array<void*, 3> better{&v3, &v3, &v3};
-  motorcade_choose_kernels(chosen.data(), better.data(), 2);
-  void* const expected = instructionSet() == InstructionSet::kX86V3 ? &v3 : &any;
-  EXPECT_THAT(chosen, ElementsAre(expected, expected, &any));
+TEST_F(InstructionSet, IsTheLeastIfTheEnvironmentWantsAny) {
+  const std::string best = instructionSet();
+  choose("any");
+  const std::string least = instructionSet();
+  EXPECT_EQ(least, HWY_ARCH_X86 ? "SSE2" : best);
+  choose(least.c_str());
+  EXPECT_EQ(instructionSet(), least);
+  choose(nullptr);
+  EXPECT_EQ(instructionSet(), best);
+}
+
+TEST_F(InstructionSet, IsTheOneThatTheEnvironmentWants) {
+  const std::string best = instructionSet();
+  if (best != "AVX2") GTEST_SKIP() << "this processor has no other than " << best;
+  choose("SSE4");
+  EXPECT_EQ(instructionSet(), "SSE4");
+}
+
+TEST_F(InstructionSet, WithAnUnknownNameTellsTheKnownOnes) {
+  try {
+    choose("AVX3000");
+    FAIL() << "an unknown name was taken";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("MOTORCADE_INSTRUCTIONS=AVX3000: must be one of any"));
+  }
 }
 
 }  // namespace

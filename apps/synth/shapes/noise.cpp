@@ -2,7 +2,14 @@
 
 #include <cassert>
 
-namespace motorcade::synth {
+#include "core/instruction_set.hpp"
+
+#define HWY_TARGET_INCLUDE "apps/synth/shapes/noise.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::synth::HWY_NAMESPACE {
 namespace {
 
 /// Several lanes at once, by the compiler's vector types.
@@ -129,6 +136,44 @@ template <int N>
   return octaves.sum(between(planeNoise<N>(cx, cy, below), planeNoise<N>(cx, cy, below + kZ), cz.blend));
 }
 
+}  // namespace
+
+float noiseOf3(float x, float y, float z, std::uint32_t seed) {
+  const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
+  const auto bits = [](float whole) HWY_ATTR { return static_cast<std::uint32_t>(static_cast<int>(whole)); };
+  const std::uint32_t x0 = bits(fx) * kX, y0 = bits(fy) * kY + (seed + bits(fz) * kZ) * kSeed, up = kZ * kSeed;
+  const std::uint32_t x1 = x0 + kX, y1 = y0 + kY;
+  const Lanes<8>::Float v = value<8>(Lanes<8>::Bits{x0, x1, x0, x1, x0, x1, x0, x1} ^
+                                     Lanes<8>::Bits{y0, y0, y1, y1, y0 + up, y0 + up, y1 + up, y1 + up});
+  const float tx = fade(x - fx), ty = fade(y - fy), tz = fade(z - fz);
+  return lerp(lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty),
+              lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
+}
+
+float fractalOf2(float x, float y, const Fractal& fractal, float footprint, std::uint32_t seed) {
+  const SeenFractal seen(fractal, footprint, seed);
+  if (!seen.reaches(0)) return 0;
+  return seen.reaches(4) ? sum2<8>(seen, x, y) : sum2<4>(seen, x, y);
+}
+
+float fractalOf3(float x, float y, float z, const Fractal& fractal, float footprint, std::uint32_t seed) {
+  const SeenFractal seen(fractal, footprint, seed);
+  if (!seen.reaches(0)) return 0;
+  return seen.reaches(4) ? sum3<8>(seen, x, y, z) : sum3<4>(seen, x, y, z);
+}
+
+}  // namespace motorcade::synth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace motorcade::synth {
+
+HWY_EXPORT(noiseOf3);
+HWY_EXPORT(fractalOf2);
+HWY_EXPORT(fractalOf3);
+
+namespace {
+
 /// Integral of the pulse train from 0 to x.
 float pulseIntegral(float x, float period, float width) {
   const float cycles = std::floor(x / period);
@@ -144,28 +189,15 @@ float pulses(float x, float period, float width, float footprint) {
 
 float noise2(float x, float y, std::uint32_t seed) { return fractal2(x, y, {1, 1, 1}, 0, seed); }
 
-float noise3(float x, float y, float z, std::uint32_t seed) {
-  const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
-  const auto bits = [](float whole) { return static_cast<std::uint32_t>(static_cast<int>(whole)); };
-  const std::uint32_t x0 = bits(fx) * kX, y0 = bits(fy) * kY + (seed + bits(fz) * kZ) * kSeed, up = kZ * kSeed;
-  const std::uint32_t x1 = x0 + kX, y1 = y0 + kY;
-  const Lanes<8>::Float v = value<8>(Lanes<8>::Bits{x0, x1, x0, x1, x0, x1, x0, x1} ^
-                                     Lanes<8>::Bits{y0, y0, y1, y1, y0 + up, y0 + up, y1 + up, y1 + up});
-  const float tx = fade(x - fx), ty = fade(y - fy), tz = fade(z - fz);
-  return lerp(lerp(lerp(v[0], v[1], tx), lerp(v[2], v[3], tx), ty),
-              lerp(lerp(v[4], v[5], tx), lerp(v[6], v[7], tx), ty), tz);
-}
+float noise3(float x, float y, float z, std::uint32_t seed) { return MOTORCADE_KERNEL(noiseOf3)(x, y, z, seed); }
 
 float fractal2(float x, float y, const Fractal& fractal, float footprint, std::uint32_t seed) {
-  const SeenFractal seen(fractal, footprint, seed);
-  if (!seen.reaches(0)) return 0;
-  return seen.reaches(4) ? sum2<8>(seen, x, y) : sum2<4>(seen, x, y);
+  return MOTORCADE_KERNEL(fractalOf2)(x, y, fractal, footprint, seed);
 }
 
 float fractal3(float x, float y, float z, const Fractal& fractal, float footprint, std::uint32_t seed) {
-  const SeenFractal seen(fractal, footprint, seed);
-  if (!seen.reaches(0)) return 0;
-  return seen.reaches(4) ? sum3<8>(seen, x, y, z) : sum3<4>(seen, x, y, z);
+  return MOTORCADE_KERNEL(fractalOf3)(x, y, z, fractal, footprint, seed);
 }
 
 }  // namespace motorcade::synth
+#endif

@@ -13,6 +13,7 @@
 namespace motorcade {
 namespace {
 
+using namespace HWY_NAMESPACE;
 using test::kRig;
 using test::lane;
 
@@ -36,9 +37,9 @@ TEST(StereoView, IsTheCamerasProjectionInEveryLane) {
   const StereoViews views = four.views();
   for (std::size_t i = 0; i < kDoubleLanes; ++i) {
     const auto uvd = kRig.project(four.T_cam_ref * four.p_ref[i]);
-    EXPECT_EQ(views.ahead[i], uvd ? 1 : 0);
+    EXPECT_EQ(views.ahead[static_cast<int>(i)], uvd ? 1 : 0);
     if (!uvd) continue;
-    EXPECT_THAT(lane(views.uvd_px, i), test::IsNear(*uvd, 1e-9));
+    EXPECT_THAT(lane(views.uvd_px, static_cast<int>(i)), test::IsNear(*uvd, 1e-9));
   }
 }
 
@@ -46,7 +47,7 @@ TEST(StereoView, JacobianIsThatOfFiniteDifferences) {
   const FourPoints four;
   const StereoViews views = four.views();
   constexpr double kStep_m = 1e-4;
-  for (const std::size_t i : {0, 1, 3}) {
+  for (const int i : {0, 1, 3}) {
     Eigen::Matrix3d J, by_differences;
     J << lane(views.J.x, i).transpose(), lane(views.J.y, i).transpose(), lane(views.J.z, i).transpose();
     for (int axis = 0; axis < 3; ++axis) {
@@ -60,9 +61,10 @@ TEST(StereoView, JacobianIsThatOfFiniteDifferences) {
 }
 
 TEST(StereoView, HuberLossIsThatOfTheCore) {
-  const Doubles chi2{0, 3.9, 4.1, 400};
+  constexpr std::array kChi2{0.0, 3.9, 4.1, 400.0};
+  const Doubles chi2 = load(kChi2.data());
   const HuberLoss loss = huberLoss(chi2, 2);
-  for (std::size_t i = 0; i < kDoubleLanes; ++i) {
+  for (int i = 0; i < static_cast<int>(kDoubleLanes); ++i) {
     const double norm = std::sqrt(chi2[i]);
     EXPECT_NEAR(loss.weight[i], robustWeight(RobustLoss::kHuber, norm, 2), 1e-12);
     const double huber_cost =

@@ -6,13 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "frontend/image/byte_lanes.hpp"
-
 namespace motorcade {
 namespace {
 
 std::uint8_t& at(DisparityBlocks& blocks, int line, int pixel, int disparity) {
-  return blocks.at(line, pixel / kByteLanes)[disparity * kByteLanes + pixel % kByteLanes];
+  return blocks.at(
+      line, pixel / DisparityBlocks::kBlock)[disparity * DisparityBlocks::kBlock + pixel % DisparityBlocks::kBlock];
 }
 
 struct Direction {

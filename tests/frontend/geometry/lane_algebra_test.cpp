@@ -1,4 +1,4 @@
-#include "frontend/geometry/double_lanes.hpp"
+#include "frontend/geometry/lane_algebra.hpp"
 
 #include <array>
 
@@ -12,21 +12,24 @@
 namespace motorcade {
 namespace {
 
+using namespace HWY_NAMESPACE;
 using test::lane;
 
-TEST(DoubleLanes, SymmetricMatricesHaveTheirInverse) {
+constexpr int kLanes = static_cast<int>(kDoubleLanes);
+
+TEST(LaneAlgebra, SymmetricMatricesHaveTheirInverse) {
   test::Noise noise(2);
   SymmetricDoubles3x3 lanes{};
   std::array<Eigen::Matrix3d, kDoubleLanes> matrices;
-  for (std::size_t i = 0; i < kDoubleLanes; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     Eigen::Matrix3d A;
     for (int k = 0; k < 9; ++k) A(k / 3, k % 3) = noise.uniform(-1, 1);
     const Eigen::Matrix3d m = matrices[i] = A * A.transpose() + Eigen::Matrix3d::Identity();
-    lanes.xx[i] = m(0, 0), lanes.xy[i] = m(0, 1), lanes.xz[i] = m(0, 2), lanes.yy[i] = m(1, 1), lanes.yz[i] = m(1, 2),
-    lanes.zz[i] = m(2, 2);
+    lanes.xx.set(i, m(0, 0)), lanes.xy.set(i, m(0, 1)), lanes.xz.set(i, m(0, 2));
+    lanes.yy.set(i, m(1, 1)), lanes.yz.set(i, m(1, 2)), lanes.zz.set(i, m(2, 2));
   }
   const SymmetricDoubles3x3 inverted = inverse(lanes);
-  for (std::size_t i = 0; i < kDoubleLanes; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     const Eigen::Vector3d ones(1, 1, 1), row = lane(inverted * allDoubles(ones), i);
     EXPECT_THAT(row, test::IsNear(Eigen::Vector3d(matrices[i].inverse() * ones), 1e-12));
   }

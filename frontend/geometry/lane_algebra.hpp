@@ -1,31 +1,23 @@
-#pragma once
+/// Vectors and matrices of which each entry is a vector of four numbers (core/lanes.hpp): a formula for one point,
+/// written with them, is computed for four points.
+#if defined(MOTORCADE_LANE_ALGEBRA) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTORCADE_LANE_ALGEBRA
+#undef MOTORCADE_LANE_ALGEBRA
+#else
+#define MOTORCADE_LANE_ALGEBRA
+#endif
 
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
 
 #include <Eigen/Core>
 
-/// Vectors of four numbers by the compilers' vector extension. Arithmetic is lane by lane, so that a formula for one
-/// point, written with them, is computed for four points. The values are the same in the portable build.
-namespace motorcade {
+#include "core/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace motorcade::HWY_NAMESPACE {
 
 inline constexpr std::size_t kDoubleLanes = 4;
-using Doubles = double __attribute__((vector_size(8 * kDoubleLanes)));
-
-inline Doubles allDoubles(double value) { return Doubles{} + value; }
-inline Doubles squareRoots(const Doubles& x) {
-#ifdef __AVX2__
-  return Doubles(_mm256_sqrt_pd(__m256d(x)));
-#else
-  return Doubles{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
-#endif
-}
-inline double total(const Doubles& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
 /// Four vectors, four matrices by their rows, and four symmetric matrices by their upper triangles.
 struct Doubles3 {
@@ -38,15 +30,14 @@ struct SymmetricDoubles3x3 {
   Doubles xx, xy, xz, yy, yz, zz;
 };
 
-inline Doubles3 allDoubles(const Eigen::Vector3d& v) {
-  return {allDoubles(v.x()), allDoubles(v.y()), allDoubles(v.z())};
-}
+inline Doubles3 allDoubles(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline Doubles3x3 allDoubles(const Eigen::Matrix3d& m) {
   return {allDoubles(Eigen::Vector3d(m.row(0))), allDoubles(Eigen::Vector3d(m.row(1))),
           allDoubles(Eigen::Vector3d(m.row(2)))};
 }
 inline void setLane(Doubles3& lanes, std::size_t lane, const Eigen::Vector3d& v) {
-  lanes.x[lane] = v.x(), lanes.y[lane] = v.y(), lanes.z[lane] = v.z();
+  const int i = static_cast<int>(lane);
+  lanes.x.set(i, v.x()), lanes.y.set(i, v.y()), lanes.z.set(i, v.z());
 }
 
 inline Doubles3 operator+(const Doubles3& a, const Doubles3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -130,4 +121,6 @@ inline Eigen::Matrix3d total(const SymmetricDoubles3x3& m) {
   return sum;
 }
 
-}  // namespace motorcade
+}  // namespace motorcade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
