@@ -13,11 +13,13 @@
 #include <type_traits>
 
 #include <hwy/highway.h>
-#if !HWY_ARCH_X86
-#include <arm_neon.h>
-#endif
 
 #include "core/instruction_set.hpp"
+#if HWY_ARCH_X86
+#include <immintrin.h>
+#else
+#include <arm_neon.h>
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace motorcade::HWY_NAMESPACE {

@@ -173,7 +173,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(linearize);
+MOTORCADE_EXPORT(linearize);
 
 namespace {
 

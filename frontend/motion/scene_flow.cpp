@@ -231,7 +231,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(fitBoth);
+MOTORCADE_EXPORT(fitBoth);
 
 SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
   return MOTORCADE_KERNEL(fitBoth)(params_, camera_, track, trail);
