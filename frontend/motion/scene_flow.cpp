@@ -94,8 +94,8 @@ struct LinearizedPoint {
 };
 
 /// `W_J` and `W_r` are the Jacobian and the residual times the weights.
-LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
-                      const Doubles3& W_r, double huber_sigmas) {
+HWY_INLINE LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
+                                 const Doubles3& W_r, double huber_sigmas) {
   const HuberLoss loss = huberLoss(dot(r, W_r), huber_sigmas);
   const Doubles weight = o.count * loss.weight;
   return {weight * symmetricTransposeTimes(J, W_J), weight * transposeTimes(J, W_r), o.count * loss.chi2};
