@@ -123,6 +123,7 @@ function(motorcade_options target)
   target_compile_options(${target} PRIVATE -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endfunction()
 
+find_path(HWY_INCLUDE_DIR hwy/foreach_target.h REQUIRED)  # Highway; its library is not needed
 # Kernels: Highway compiles them for several instruction sets, and the program takes the best that its processor has when it first calls one
 # (core/instruction_set.hpp). A source includes itself once for each, so it is a unit of its own.
 # Others than x86-64 have one version; NEON is a part of arm64.

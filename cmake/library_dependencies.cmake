@@ -21,8 +21,3 @@ find_library(DEFLATE_LIBRARY NAMES libdeflate.a deflate REQUIRED)  # 60 kB in th
 add_library(motorcade::deflate UNKNOWN IMPORTED)
 set_target_properties(motorcade::deflate PROPERTIES
   IMPORTED_LOCATION ${DEFLATE_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${DEFLATE_INCLUDE_DIR})
-find_path(HWY_INCLUDE_DIR hwy/highway.h REQUIRED)
-find_library(HWY_LIBRARY hwy REQUIRED)
-add_library(motorcade::hwy UNKNOWN IMPORTED)
-set_target_properties(motorcade::hwy PROPERTIES
-  IMPORTED_LOCATION ${HWY_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${HWY_INCLUDE_DIR})

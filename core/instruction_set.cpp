@@ -1,46 +1,55 @@
 #include "core/instruction_set.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
-#include <mutex>
 #include <stdexcept>
-#include <string>
 
 namespace motorcade {
 namespace {
 
-/// Highway takes a processor without any of its targets for one without vectors; but x86-64 has SSE2, and arm64 NEON.
-std::string nameOf(std::int64_t target) {
-  if (target == HWY_SCALAR || target == HWY_EMU128) return HWY_ARCH_X86 ? "SSE2" : "NEON";
-  return hwy::TargetName(target);
-}
+// From the least on, as in tables of kernels. Highway takes a processor without any of its targets for one without
+// vectors; but x86-64 has SSE2, and arm64 NEON.
+#if HWY_ARCH_X86
+constexpr std::array kNames{"SSE2", "SSE4", "AVX2"};
 
-/// Targets that are better than those of a name. Better ones have lower bits.
-std::int64_t betterThan(const std::string& name) {
-  if (name == "any") return HWY_STATIC_TARGET - 1;
+int best() {
+  __builtin_cpu_init();
+  const auto has = [](bool feature, auto... others) { return (feature && ... && others); };
+  if (!has(__builtin_cpu_supports("sse4.2") != 0, __builtin_cpu_supports("aes") != 0,
+           __builtin_cpu_supports("pclmul") != 0))
+    return 0;
+  return has(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0,
+             __builtin_cpu_supports("bmi") != 0, __builtin_cpu_supports("bmi2") != 0)
+             ? 2
+             : 1;
+}
+#else
+constexpr std::array kNames{"NEON"};
+
+int best() { return 0; }
+#endif
+
+/// The place of a name; `any` is the least.
+int placeOf(const std::string& name) {
+  if (name == "any") return 0;
   std::string known = "any";
-  for (std::int64_t rest = HWY_TARGETS; rest != 0; rest &= rest - 1) {
-    const std::int64_t target = rest & -rest;
-    if (name == nameOf(target)) return target - 1;
-    known += ", " + nameOf(target);
+  for (std::size_t place = 0; place < kNames.size(); ++place) {
+    if (name == kNames[place]) return static_cast<int>(place);
+    known += std::string(", ") + kNames[place];
   }
   throw std::invalid_argument("MOTORCADE_INSTRUCTIONS=" + name + ": must be one of " + known);
 }
 
-std::mutex choosing;  // Highway takes no care of several threads
-
 }  // namespace
 
+std::atomic<int> chosen_instructions{-1};
+
 void chooseInstructions() {
-  const std::lock_guard lock(choosing);
   const char* const wanted = secure_getenv("MOTORCADE_INSTRUCTIONS");
-  hwy::DisableTargets(wanted != nullptr ? betterThan(wanted) : 0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  chosen_instructions = wanted != nullptr ? std::min(placeOf(wanted), best()) : best();
 }
 
-std::string instructionSet() {
-  chosenInstructions();
-  const std::int64_t targets = (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
-  return nameOf(targets & -targets);
-}
+std::string instructionSet() { return kNames[chosenInstructions()]; }
 
 }  // namespace motorcade

@@ -1,32 +1,42 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <string>
 
 // The kernels' vectors have the width of AVX2's, and few processors have SSSE3 without SSE4.
+#undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | (HWY_AVX2 - 1))
-#include <hwy/targets.h>
+#include <hwy/detect_targets.h>
 
 namespace motorcade {
 
-/// Instructions that the kernels use, as Highway names them: the best for which they are compiled and that the
-/// processor has. With MOTORCADE_INSTRUCTIONS the environment chooses lesser ones, `any` the least. Results are the
-/// same. Throws for a name that is not known.
+/// Instructions that the kernels use: the best for which they are compiled and that the processor has. With
+/// MOTORCADE_INSTRUCTIONS the environment chooses lesser ones, `any` the least. Results are the same.
 std::string instructionSet();
 
-/// Makes Highway's choice before the first kernel is called.
+/// Chooses them, before the first kernel is called or anew. Throws for a name that is not known.
 void chooseInstructions();
-inline hwy::ChosenTarget& chosenInstructions() {
-  hwy::ChosenTarget& chosen = hwy::GetChosenTarget();
-  if (!chosen.IsInitialized()) [[unlikely]]
+
+/// The chosen version's place in tables of MOTORCADE_EXPORT; negative before the choice.
+extern std::atomic<int> chosen_instructions;
+inline std::size_t chosenInstructions() {
+  if (chosen_instructions.load(std::memory_order_relaxed) < 0) [[unlikely]]
     chooseInstructions();
-  return chosen;
+  return static_cast<std::size_t>(chosen_instructions.load(std::memory_order_relaxed));
 }
 
 }  // namespace motorcade
 
-/// A function of Highway's namespaces, after HWY_EXPORT, in the version of the chosen instructions.
-#if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0
-#define MOTORCADE_KERNEL(function) HWY_STATIC_DISPATCH(function)
+/// As HWY_EXPORT and HWY_DYNAMIC_DISPATCH, without Highway's library, which measures clocks whenever it is loaded: a
+/// table of a function's versions in Highway's namespaces, from the least on, and the one that is chosen.
+#if HWY_ARCH_X86
+#define MOTORCADE_EXPORT(function)                                                       \
+  static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##_versions[] {      \
+    &HWY_STATIC_DISPATCH(function), HWY_CHOOSE_SSE4(function), HWY_CHOOSE_AVX2(function) \
+  }
 #else
-#define MOTORCADE_KERNEL(function) (*HWY_DISPATCH_TABLE(function)[motorcade::chosenInstructions().GetIndex()])
+#define MOTORCADE_EXPORT(function) \
+  static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##_versions[] { &HWY_STATIC_DISPATCH(function) }
 #endif
+#define MOTORCADE_KERNEL(function) (*function##_versions[motorcade::chosenInstructions()])

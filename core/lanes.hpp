@@ -13,11 +13,13 @@
 #include <type_traits>
 
 #include <hwy/highway.h>
-#if !HWY_ARCH_X86
-#include <arm_neon.h>
-#endif
 
 #include "core/instruction_set.hpp"
+#if HWY_ARCH_X86
+#include <immintrin.h>
+#else
+#include <arm_neon.h>
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace motorcade::HWY_NAMESPACE {
@@ -103,17 +105,18 @@ struct Lanes {
   }
 };
 
+// Without the C library's checks of where arrays end, which would be calls.
 template <class T>
 HWY_INLINE Lanes<T> load(const T* from) {
   Lanes<T> lanes;
-  std::memcpy(&lanes.part[0], from, kPartBytes);
-  if constexpr (kParts == 2) std::memcpy(&lanes.part[1], from + Lanes<T>::kPerPart, kPartBytes);
+  __builtin_memcpy(&lanes.part[0], from, kPartBytes);
+  if constexpr (kParts == 2) __builtin_memcpy(&lanes.part[1], from + Lanes<T>::kPerPart, kPartBytes);
   return lanes;
 }
 template <class T>
 HWY_INLINE void store(T* to, const std::type_identity_t<Lanes<T>>& lanes) {
-  std::memcpy(to, &lanes.part[0], kPartBytes);
-  if constexpr (kParts == 2) std::memcpy(to + Lanes<T>::kPerPart, &lanes.part[1], kPartBytes);
+  __builtin_memcpy(to, &lanes.part[0], kPartBytes);
+  if constexpr (kParts == 2) __builtin_memcpy(to + Lanes<T>::kPerPart, &lanes.part[1], kPartBytes);
 }
 
 using Doubles = Lanes<double>;

@@ -258,9 +258,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(factorize);
-HWY_EXPORT(subtractProduct);
-HWY_EXPORT(addProductOf);
+MOTORCADE_EXPORT(factorize);
+MOTORCADE_EXPORT(subtractProduct);
+MOTORCADE_EXPORT(addProductOf);
 
 double factorizePanel(const Panel& panel, std::vector<int>& singular) {
   return MOTORCADE_KERNEL(factorize)(panel, singular);

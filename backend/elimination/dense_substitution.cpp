@@ -130,9 +130,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(solveBack);
-HWY_EXPORT(solveForward);
-HWY_EXPORT(solveForwardRows);
+MOTORCADE_EXPORT(solveBack);
+MOTORCADE_EXPORT(solveForward);
+MOTORCADE_EXPORT(solveForwardRows);
 
 void backSubstitute(const Panel& panel, const double* x_separator, double* x_frontal) {
   MOTORCADE_KERNEL(solveBack)(panel, x_separator, x_frontal);

@@ -59,7 +59,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(addProduct);
+MOTORCADE_EXPORT(addProduct);
 
 void addSymmetricProduct(const PackedTriangle& a, const double* x, double* y) { MOTORCADE_KERNEL(addProduct)(a, x, y); }
 

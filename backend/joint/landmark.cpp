@@ -110,7 +110,8 @@ class PoseSteps {
 };
 
 /// A row of J: by the steps of the pose, and what is right of that.
-void storeByPose(const std::array<Lanes3, 2>& by_steps, const std::array<Vec, 2>& rest, LinearView* linear, int row) {
+HWY_INLINE void storeByPose(const std::array<Lanes3, 2>& by_steps, const std::array<Vec, 2>& rest, LinearView* linear,
+                            int row) {
   const auto& [origin, turn] = by_steps;
   storeInto({origin.x, origin.y, origin.z, turn.x}, linear, jRow(row));
   storeInto({turn.y, turn.z, rest[0], rest[1]}, linear, jRow(row, 4));
@@ -173,7 +174,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(linearize);
+MOTORCADE_EXPORT(linearize);
 
 namespace {
 

@@ -181,7 +181,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(eliminate);
+MOTORCADE_EXPORT(eliminate);
 
 EliminatedLandmarks eliminateLandmarks(const StereoCamera& camera, const LandmarkNoise& noise,
                                        const LandmarkViews& landmarks, FramePose pose, std::vector<SE3> T_cam_body,

@@ -206,7 +206,7 @@ HWY_AFTER_NAMESPACE();
 namespace motorcade {
 namespace {
 
-HWY_EXPORT(findMaxima);
+MOTORCADE_EXPORT(findMaxima);
 
 constexpr int kCell_px = CornerDetector::kCell_px, kMaxPerCell = 6, kBorder_px = HWY_NAMESPACE::kBorder_px;
 

@@ -196,9 +196,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(fit);
-HWY_EXPORT(chi2Of);
-HWY_EXPORT(score);
+MOTORCADE_EXPORT(fit);
+MOTORCADE_EXPORT(chi2Of);
+MOTORCADE_EXPORT(score);
 
 PoseObservations::PoseObservations(std::span<const PoseObservation> observations) : size_(observations.size()) {
   constexpr std::size_t kLanes = std::tuple_size_v<Block::Four>;

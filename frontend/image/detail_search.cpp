@@ -155,8 +155,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(addDetail);
-HWY_EXPORT(search);
+MOTORCADE_EXPORT(addDetail);
+MOTORCADE_EXPORT(search);
 
 DetailedImage withDetail(const Image& image, ImagePool& pool) { return MOTORCADE_KERNEL(addDetail)(image, pool); }
 

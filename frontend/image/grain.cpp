@@ -73,8 +73,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(grainAt);
-HWY_EXPORT(smoothed);
+MOTORCADE_EXPORT(grainAt);
+MOTORCADE_EXPORT(smoothed);
 
 namespace {
 

@@ -25,7 +25,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(halveRow);
+MOTORCADE_EXPORT(halveRow);
 
 Image halved(const Image& image, ImagePool& pool) {
   Image half = pool.acquire(image.width() / 2, image.height() / 2);

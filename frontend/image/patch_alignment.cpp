@@ -296,8 +296,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(align);
-HWY_EXPORT(refine);
+MOTORCADE_EXPORT(align);
+MOTORCADE_EXPORT(refine);
 
 std::optional<AlignedPatch> alignPatch(const PatchTemplate& patch, const Image& image, const Eigen::Vector2f& guess_px,
                                        const PatchParams& params) {

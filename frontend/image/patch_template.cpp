@@ -245,7 +245,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(make);
+MOTORCADE_EXPORT(make);
 
 std::optional<PatchTemplate> makeTemplate(const Image& image, float u_px, float v_px, int window_px,
                                           PatchDeformation deformation, float scale) {

@@ -71,10 +71,17 @@ HWY_INLINE void storeWordsAsBytes(std::uint8_t* p, const Words& words) {
   const auto bytes = __builtin_shufflevector(SixteenBytes(words.part[0]), SixteenBytes(words.part[1]), 0, 2, 4, 6, 8,
                                              10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 #endif
-  std::memcpy(p, &bytes, sizeof bytes);
+  __builtin_memcpy(p, &bytes, sizeof bytes);
 }
 
-HWY_INLINE Words magnitude(const Words& x) { return greater(x, -x); }
+HWY_INLINE Words magnitude(const Words& x) {
+#if HWY_TARGET == HWY_AVX2
+  return Words::each<std::int16_t>(
+      [](const Words::Part& part) HWY_ATTR { return Words::Part(_mm256_abs_epi16(__m256i(part))); }, x);
+#else
+  return greater(x, -x);
+#endif
+}
 /// Products of the words, added in pairs.
 HWY_INLINE WordSums products(const Words& a, const Words& b) {
   return Words::each<std::int32_t>(

@@ -101,7 +101,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(fillDifferences);
+MOTORCADE_EXPORT(fillDifferences);
 
 void windowDifferences(const Window& window, const Image& other, int other_u, int other_v,
                        std::span<std::uint16_t> costs, std::uint32_t blocks) {

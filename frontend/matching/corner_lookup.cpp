@@ -72,10 +72,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(differenceOfPixels);
-HWY_EXPORT(fillSignature);
-HWY_EXPORT(compareFound);
-HWY_EXPORT(findWithin);
+MOTORCADE_EXPORT(differenceOfPixels);
+MOTORCADE_EXPORT(fillSignature);
+MOTORCADE_EXPORT(compareFound);
+MOTORCADE_EXPORT(findWithin);
 
 Signature::Signature(const ImagePyramid& pyramid, float u_px, float v_px) {
   const int last_level = static_cast<int>(pyramid.levels.size()) - 1;

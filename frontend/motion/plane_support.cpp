@@ -59,7 +59,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(bestOf);
+MOTORCADE_EXPORT(bestOf);
 
 std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
   return MOTORCADE_KERNEL(bestOf)(planes, points);

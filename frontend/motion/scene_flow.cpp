@@ -94,8 +94,8 @@ struct LinearizedPoint {
 };
 
 /// `W_J` and `W_r` are the Jacobian and the residual times the weights.
-LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
-                      const Doubles3& W_r, double huber_sigmas) {
+HWY_INLINE LinearizedPoint weigh(const Observations& o, const Doubles3x3& J, const Doubles3x3& W_J, const Doubles3& r,
+                                 const Doubles3& W_r, double huber_sigmas) {
   const HuberLoss loss = huberLoss(dot(r, W_r), huber_sigmas);
   const Doubles weight = o.count * loss.weight;
   return {weight * symmetricTransposeTimes(J, W_J), weight * transposeTimes(J, W_r), o.count * loss.chi2};
@@ -231,7 +231,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(fitBoth);
+MOTORCADE_EXPORT(fitBoth);
 
 SceneFlowEstimator::Fits SceneFlowEstimator::fit(const PointTrack& track, const CameraTrail& trail) const {
   return MOTORCADE_KERNEL(fitBoth)(params_, camera_, track, trail);

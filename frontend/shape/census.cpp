@@ -55,7 +55,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(transformRow);
+MOTORCADE_EXPORT(transformRow);
 
 namespace {
 

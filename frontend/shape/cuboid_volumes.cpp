@@ -108,7 +108,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(tellCells);
+MOTORCADE_EXPORT(tellCells);
 
 namespace {
 

@@ -65,9 +65,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(compareBlock);
-HWY_EXPORT(bestOfRow);
-HWY_EXPORT(gatherBlock);
+MOTORCADE_EXPORT(compareBlock);
+MOTORCADE_EXPORT(bestOfRow);
+MOTORCADE_EXPORT(gatherBlock);
 
 namespace {
 

@@ -108,7 +108,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(refineAll);
+MOTORCADE_EXPORT(refineAll);
 
 void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells,
                        DisparityMap& map) {

@@ -105,7 +105,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(compareAll);
+MOTORCADE_EXPORT(compareAll);
 
 namespace {
 

@@ -123,7 +123,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(sumAlongPaths);
+MOTORCADE_EXPORT(sumAlongPaths);
 
 void DisparityBlocks::resize(int lines, int pixels, int disparities) {
   const auto blocksFor = [](int count) { return (count + kBlock - 1) / kBlock; };

@@ -51,7 +51,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(weighBlock);
+MOTORCADE_EXPORT(weighBlock);
 
 namespace {
 

@@ -168,9 +168,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade::synth {
 
-HWY_EXPORT(noiseOf3);
-HWY_EXPORT(fractalOf2);
-HWY_EXPORT(fractalOf3);
+MOTORCADE_EXPORT(noiseOf3);
+MOTORCADE_EXPORT(fractalOf2);
+MOTORCADE_EXPORT(fractalOf3);
 
 namespace {
 

@@ -98,15 +98,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-HWY_EXPORT(checkLanes);
+MOTORCADE_EXPORT(checkLanes);
 
 namespace {
 
 TEST(PixelLanes, ComputeTheSameWithAllInstructions) {
-  for (std::int64_t rest = (hwy::SupportedTargets() | HWY_STATIC_TARGET) & HWY_TARGETS; rest != 0; rest &= rest - 1) {
-    const std::int64_t target = rest & -rest;
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::GetChosenTarget().Update(target);
+  const int best = (chooseInstructions(), chosen_instructions);
+  for (int version = 0; version <= best; ++version) {
+    chosen_instructions = version;
+    SCOPED_TRACE(instructionSet());
     MOTORCADE_KERNEL(checkLanes)();
   }
   chooseInstructions();
