@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "io/files/errors.hpp"
+#include "io/layouts/layout_parts.hpp"
 #include "io/sequence/name_times.hpp"
 #include "io/sequence/numbering.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -163,9 +164,9 @@ TEST_F(Pairing, TicksOfAClockWithoutAUnitAreEvenlySpaced) {
 }
 
 TEST_F(Pairing, TimesMayDifferByLessThanHalfAnInterval) {
-  constexpr std::int64_t kFirst_ns = 1'403'636'579'763'555'584, kPeriod_ns = 33'333'333;
+  constexpr std::int64_t kFirst_ns = 1'403'636'579'763'555'584, kInterval_ns = 33'333'333;
   const auto nameOf = [](std::int64_t later_ns) {
-    return [=](int i) { return std::to_string(kFirst_ns + kPeriod_ns * i + (i % 3) * later_ns) + ".png"; };
+    return [=](int i) { return std::to_string(kFirst_ns + kInterval_ns * i + (i % 3) * later_ns) + ".png"; };
   };
   writeAll("left", 30, nameOf(0), {10});
   writeAll("right", 30, nameOf(2'345), {20});
@@ -173,8 +174,9 @@ TEST_F(Pairing, TimesMayDifferByLessThanHalfAnInterval) {
   ASSERT_EQ(found.frames.size(), 30U);
   ASSERT_EQ(found.stamps.size(), 30U);
   EXPECT_TRUE(found.stamps_measured);
-  EXPECT_EQ(found.stamps[2].ns, kFirst_ns + 2 * kPeriod_ns);
-  EXPECT_EQ(found.stamps[10].ns, kFirst_ns + 10 * kPeriod_ns + 2'345);  // the right image's, as the left one is missing
+  EXPECT_EQ(found.stamps[2].ns, kFirst_ns + 2 * kInterval_ns);
+  EXPECT_EQ(found.stamps[10].ns,
+            kFirst_ns + 10 * kInterval_ns + 2'345);  // the right image's, as the left one is missing
   EXPECT_TRUE(found.frames[10].left_missing);
   EXPECT_TRUE(found.frames[20].right_missing);
   EXPECT_EQ(found.frames[29].right.filename(), nameOf(2'345)(29));
