@@ -172,7 +172,9 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const Stereo
                      .ahead_frames = predicted.ahead_frames};
   std::optional<SE3> T_then_now;
   if (isSure(measured.camera)) T_then_now = measured.camera.T_seen_now;
-  if (!T_then_now && predicted.dt_s < GapBridge::kMaxGap_s) T_then_now = gap_bridge_.locate(gap, predicted.T_seen_now);
+  // A clock that was set back tells no length of a gap.
+  const bool is_gap = predicted.dt_s > 0 && predicted.dt_s < GapBridge::kMaxGap_s;
+  if (!T_then_now && is_gap) T_then_now = gap_bridge_.locate(gap, predicted.T_seen_now);
   if (T_then_now && !odometry_.believes(*T_then_now, predicted)) T_then_now.reset();
   if (T_then_now) {
     const std::vector<RestingPoint> lost = without(measured.flow, points);

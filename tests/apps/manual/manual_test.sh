@@ -2,7 +2,7 @@
 # Tests what bash completes behind `motorcade`, and that each command has its manual page: manual_test.sh MOTORCADE [PAGES]
 set -euo pipefail
 motorcade=$1 pages=${2:-}
-source "$(dirname "$0")/../../apps/manual/motorcade.bash"
+source "$(dirname "$0")/../../../apps/manual/motorcade.bash"
 failures=0
 
 # completes WORDS... : what the last word may become, on one line
