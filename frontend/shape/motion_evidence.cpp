@@ -47,7 +47,7 @@ Places placesBefore(const Geometry& g, const MotionEvidence::Motion& motion, con
 
 /// Zero where one of the places is outside its image.
 int difference(const Geometry& g, int cell, const Places& moved, const Places& rested, int lane) {
-  // What is negative is outside in any case.
+  // Negative places are outside in any case. NOLINTNEXTLINE(bugprone-incorrect-roundings)
   const auto nearest = [](float px) HWY_ATTR { return static_cast<int>(px + 0.5F); };
   const PixelWindow& window = g.map.window;
   const int u = window.u0 + cell % window.width, v = window.v0 + cell / window.width, slack = g.slack;
@@ -73,8 +73,9 @@ void compare(const Geometry& g, std::span<const int> cells, std::int16_t* eviden
   std::array<float, kFloatLanes> columns{}, rows{}, disparities_px;
   disparities_px.fill(1);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    columns[i] = static_cast<float>(g.map.window.u0 + cells[i] % g.map.window.width);
-    rows[i] = static_cast<float>(g.map.window.v0 + cells[i] / g.map.window.width);
+    const int row = cells[i] / g.map.window.width, column = cells[i] % g.map.window.width;
+    columns[i] = static_cast<float>(g.map.window.u0 + column);
+    rows[i] = static_cast<float>(g.map.window.v0 + row);
     disparities_px[i] = g.map.disparity_px[cells[i]];
   }
   const Floats z = g.fb / (load(disparities_px.data()) * g.scale + g.offset_px);

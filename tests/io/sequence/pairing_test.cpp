@@ -20,7 +20,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 /// A name made of a number.
 using NameOf = std::function<std::string(int)>;
@@ -34,9 +33,9 @@ std::string padded(int number, std::size_t width) {
 class Pairing : public testing::Test {
  protected:
   void write(const std::string& side, const std::string& name) { folder_.write(side + "/" + name, ""); }
-  void writeAll(const std::string& side, int count, const NameOf& nameOf, const std::vector<int>& missing = {}) {
+  void writeAll(const std::string& side, int count, const NameOf& name_of, const std::vector<int>& missing = {}) {
     for (int i = 0; i < count; ++i)
-      if (std::ranges::find(missing, i) == missing.end()) write(side, nameOf(i));
+      if (std::ranges::find(missing, i) == missing.end()) write(side, name_of(i));
   }
   PairedImages pair() {
     return pairImages(namedImages(imagesIn(folder_ / "left")), namedImages(imagesIn(folder_ / "right")));
