@@ -28,8 +28,8 @@ inline std::size_t chosenInstructions() {
 
 }  // namespace motorcade
 
-/// As HWY_EXPORT and HWY_DYNAMIC_DISPATCH, without Highway's library, which measures clocks whenever it is loaded: a
-/// table of a function's versions in Highway's namespaces, from the least on, and the one that is chosen.
+/// Table of a function's versions in Highway's namespaces, from the least on, and the chosen one. They replace
+/// HWY_EXPORT and HWY_DYNAMIC_DISPATCH, which need Highway's library: it measures clocks whenever it is loaded.
 #if HWY_ARCH_X86
 #define MOTORCADE_EXPORT(function)                                                       \
   static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##_versions[] {      \

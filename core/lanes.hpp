@@ -92,7 +92,7 @@ struct Lanes {
   friend HWY_INLINE Lanes operator>>(const Lanes& a, int bits) {
     return each<T>([bits](const Part& x) HWY_ATTR { return Part(x >> static_cast<T>(bits)); }, a);
   }
-  /// Of each lane, `a` where the mask is set and `b` elsewhere.
+  /// Takes each lane of `a` where the mask is set, and of `b` elsewhere.
   friend HWY_INLINE Lanes choose(const Lanes<MaskOf<T>>& mask, const Lanes& a, const Lanes& b) {
     return each<T>([](const auto& m, const Part& x, const Part& y) HWY_ATTR { return Part(m ? x : y); }, mask, a, b);
   }

@@ -31,7 +31,7 @@ using PushStatus = Tracker::Push::Status;
 }  // namespace
 
 /// Checks pairs, copies them once, rectifies them and hands them to the drive's pipeline, which delivers its results.
-/// With a callback for results, a thread calls it.
+/// A thread calls the callback for results, if there is one.
 class Tracker::Impl {
  public:
   Impl(const Camera& camera, const Options& options, const PipelineConfig& config);

@@ -13,7 +13,7 @@ namespace motorcade {
 bool holdsFinishedRun(const std::filesystem::path& folder);
 
 /// True if pairs came at the pace of a clock (`--rate`, `--live`); latency then counts from when a pair was due.
-/// Without a clock, pairs follow each other as fast as they can, and latency is mostly waiting. False if the run does
+/// Pairs follow each other as fast as they can without a clock, and latency is mostly waiting. False if the run does
 /// not record its pace.
 bool wasPaced(const RunFolder& run);
 

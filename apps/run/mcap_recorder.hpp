@@ -17,8 +17,8 @@
 namespace motorcade {
 
 /// Writes a run as an MCAP file while it goes on (`run --mcap`). Encoding and writing are done on a thread of its own.
-/// If that falls behind a live camera, first the images of frames are left out, then whole frames, and both are
-/// counted. A replay waits for it instead.
+/// The recorder leaves out first the images of frames, then whole frames, if that thread falls behind a live camera,
+/// and counts both. A replay waits for it instead.
 class McapRecorder : public RunListener {
  public:
   enum class Behind { kWait, kLeaveOut };

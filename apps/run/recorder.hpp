@@ -32,7 +32,7 @@ class Recorder {
 
   const FollowedFrames& followed() const { return followed_; }
   const VehicleMotionNews& vehicleMotion() const { return vehicle_motion_; }
-  /// After `finish`.
+  /// Load of the writing thread, complete after `finish`.
   const WriteQueue::Load& writing() const { return queue_.load(); }
 
  private:

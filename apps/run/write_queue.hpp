@@ -23,7 +23,7 @@ class WriteQueue {
   struct Bounds {
     std::size_t results, with_views;  // as many may wait, and of them with what they show in the image
   };
-  /// What the disk could not keep up with.
+  /// Results that waited for the disk.
   struct Load {
     std::size_t high_water = 0, bound = 0;  // results
     std::int64_t views_left_out = 0;        // frames
@@ -44,7 +44,7 @@ class WriteQueue {
   /// Waits until all is written; throws what writing threw. Nothing may be pushed any more.
   void close();
 
-  /// After `close`.
+  /// Complete after `close`.
   const Load& load() const { return load_; }
 
  private:

@@ -17,7 +17,7 @@ struct FoundDrive {
 };
 
 /// The drives of an entry, in the order of their paths. A drive's name is the entry's, else the last part of its path.
-/// Of a glob it is the path from the first part with a wildcard on, of a scene the scene's.
+/// A glob's drives are named by the path from the first part with a wildcard on, a scene by its own name.
 std::vector<FoundDrive> findDrives(const ManifestEntry& entry, const std::filesystem::path& root);
 
 }  // namespace motorcade

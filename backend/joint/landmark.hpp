@@ -93,7 +93,7 @@ class LandmarkFit {
   double sharedError_px() const { return landmark_[3]; }
   double sharedErrorSigma_px() const { return shared_sigma_px_; }
 
-  /// Where views are linearized, and the sums over them.
+  /// State at which views are linearized, and the sums over them.
   struct Linearization {
     const StereoCamera& camera;
     const LandmarkNoise& noise;

@@ -18,7 +18,7 @@ struct DelaunayGraph {
 
 /// Delaunay triangulation by divide and conquer (Guibas, Stolfi 1985). Exact for positions rounded to 1/16 px, within
 /// +/-2^24 px. Collinear points give the chain of edges along their line; fewer than two distinct points give no edge.
-/// Without `with_triangles` the triangles are left out.
+/// The triangles are left out without `with_triangles`.
 DelaunayGraph delaunay(std::span<const Eigen::Vector2d> points_px, bool with_triangles = true);
 
 }  // namespace motorcade

@@ -130,7 +130,7 @@ HWY_INLINE FourSums totals(const WordSums& a, const WordSums& b, const WordSums&
 }
 HWY_INLINE int total(const WordSums& x) { return totals(x, x, x, x)[0]; }
 
-/// Of words that are not negative.
+/// The least of words that are not negative.
 HWY_INLINE std::int16_t leastOf(const Words& x) {
 #if HWY_TARGET == HWY_AVX2
   EightWords least = EightWords(_mm256_castsi256_si128(__m256i(x.part[0])));
@@ -151,7 +151,7 @@ HWY_INLINE std::int16_t leastOf(const Words& x) {
 #endif
 }
 
-/// How many bits are set in each byte.
+/// The number of bits that are set in each byte.
 HWY_INLINE Bytes bitCounts(const Bytes& x) {
 #if MOTORCADE_SSE4
   static constexpr std::uint8_t kOfNibble[]{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,
@@ -167,8 +167,8 @@ HWY_INLINE Bytes bitCounts(const Bytes& x) {
 }
 
 #if MOTORCADE_SSE4
-/// Of sixteen pairs of pixels, the sums after each is multiplied by its weight. `pixels` says which, counted from `p`
-/// on and, for the last eight pairs, from `q` on.
+/// Weighted sums of sixteen pairs of pixels. `pixels` says which, counted from `p` on and, for the last eight pairs,
+/// from `q` on.
 HWY_INLINE Words weighedPixels(const std::uint8_t* p, const std::uint8_t* q, const Bytes& pixels,
                                const Words& weights) {
   const auto sixteen = [](const std::uint8_t* at)

@@ -19,7 +19,7 @@ struct CornerSearch {
   std::size_t count = 0;
   std::int64_t first = 0, second = 0;  // keys
 
-  /// Of the corners that look as similar, the first one is the least.
+  /// Key that is least for the most similar corner, and for the first of those that look alike.
   static std::int64_t key(int difference, int corner) { return std::int64_t{difference} << 32 | corner; }
 };
 

@@ -203,8 +203,8 @@ double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
   return interval_s > 0 ? secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) / interval_s : 1;
 }
 
-/// As much may have changed as over missing frames, however regular the frames are, and there is nothing wrong with the
-/// image.
+/// True when as much may have changed as over missing frames, however regular the frames are, and nothing is wrong with
+/// the image.
 bool OpticalFlowTracker::State::isSparse(const Features& now) const {
   return secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) > kSparse_s && !isFrozen(now) &&
          textureOf(now) >= kSharpShare * textureOf(*previous);

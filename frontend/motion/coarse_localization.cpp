@@ -169,7 +169,7 @@ TurnSearch::Voters TurnSearch::votersAt(float forward_m) const {
   return voters;
 }
 
-/// Where the first `count` of the points are at the coarsest level: nowhere where they are behind the camera.
+/// Places of the first `count` points at the coarsest level; `kNowhere` for those behind the camera.
 Places TurnSearch::project(const Voters& voters, std::size_t count, const Turn& turn, float forward_m) const {
   const Eigen::Matrix3f& R = turn.R_now_then;
   const Eigen::Vector3f t_m = turn.t_now_then_m + forward_m * turn.per_forward;

@@ -10,11 +10,11 @@
 
 #include "core/image.hpp"
 
-/// Correlation of small windows of one image with those of another, for a search over many places: what depends on the
-/// window alone is computed before.
+/// Correlates small windows of one image with those of another, for a search over many places. Means and norms of the
+/// windows are computed once.
 namespace motorcade {
 
-/// How a small window of an image looks: its pixels less their mean, divided by their norm.
+/// Pixels of a small window less their mean, divided by their norm.
 class WindowPattern {
  public:
   static constexpr int kSide = 8, kPixels = kSide * kSide;
@@ -36,8 +36,8 @@ class CorrelatedImage {
  public:
   explicit CorrelatedImage(const Image& image);
 
-  /// From -1 to 1, of the pattern with the window at the nearest whole pixel: 0 where that has no texture. Empty where
-  /// it reaches beyond the border.
+  /// Correlation, from -1 to 1, of the pattern with the window at the nearest whole pixel; 0 where that has no texture.
+  /// Empty where it reaches beyond the border.
   std::optional<float> correlation(const WindowPattern& pattern, const Eigen::Vector2f& at_px) const;
 
  private:

@@ -32,7 +32,7 @@ class Remap {
   /// in 32 bits. The error of at most 1/128 px is a tenth of a match's uncertainty.
   static constexpr int kFractionBits = 6;
 
-  /// Where pixels come from: the upper left of the four that are weighed, and how far right and down of it, in 64ths.
+  /// Source positions: the upper left of the four pixels that are weighed, and how far right and down of it, in 64ths.
   struct Sources {
     const std::int16_t *x, *y;
     const std::uint8_t *right, *down;

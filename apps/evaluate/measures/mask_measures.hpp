@@ -24,7 +24,7 @@ double maskIou(const PixelsOf& a, const PixelsOf& b);
 
 /// Distance of two outlines [px]: the mean over the boundary pixels of both of the distance to the nearest boundary
 /// pixel of the other. A boundary pixel belongs to the mask and has a neighbor (of four) in the image that does not.
-/// Where the image's border cuts an object, it has no boundary. Empty when one of the masks has none.
+/// Objects have no boundary where the image's border cuts them. Empty when one of the masks has none.
 std::optional<double> boundaryDistance_px(const PixelsOf& a, const PixelsOf& b);
 
 /// Errors of the reported rows on labels that are asked for, in frames whose masks exist.

@@ -24,7 +24,7 @@ class StalledDisk {
       views += written.result.measurements ? 1 : 0;
     };
   }
-  /// Until the first result has come to the disk.
+  /// Waits until the first result has come to the disk.
   void waitUntilReached() { reached_.wait(); }
   void goOn() { stall_.count_down(); }
 

@@ -33,7 +33,7 @@ TEST(CoarseLocalization, FindsAMotionThatIsFarFromThePredictedOne) {
   }
 }
 
-/// As many motions as after two seconds, of which a quarter of the points make a choice.
+/// The range is that after two seconds: a quarter of the points choose among its motions.
 TEST(CoarseLocalization, FindsAMotionAmongTensOfThousands) {
   const MotionRange range{.T_then_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, 22}), .forward_m = 20, .yaw_rad = 1.0};
   const SE3 T_then_now = SE3::exp((Vector6d() << 0, 0, 9.4, 0.01, -0.25, 0).finished());

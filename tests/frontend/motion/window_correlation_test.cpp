@@ -11,14 +11,13 @@ namespace {
 
 constexpr int kSide = WindowPattern::kSide, kWidth = 40, kHeight = 24;
 
-/// Of gray levels from 60 to 200, or one of them.
-Image noise(unsigned seed, ImagePool& pool, bool is_uniform = false) {
+/// Image of independent gray levels in a range.
+Image noise(unsigned seed, ImagePool& pool, int least = 60, int most = 200) {
   std::mt19937 random(seed);
-  std::uniform_int_distribution<int> gray(60, 200);
+  std::uniform_int_distribution<int> gray(least, most);
   Image image = pool.acquire(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      image.mutableRow(y)[x] = static_cast<std::uint8_t>(is_uniform ? 128 : gray(random));
+    for (int x = 0; x < kWidth; ++x) image.mutableRow(y)[x] = static_cast<std::uint8_t>(gray(random));
   return image;
 }
 
@@ -57,6 +56,19 @@ TEST(WindowCorrelation, IsTheNormalizedCrossCorrelationOfBothWindows) {
   EXPECT_NEAR(CorrelatedImage(then).correlation(*pattern, middleOf(5, 7)).value_or(9), 1, kRounding);
 }
 
+/// A pattern's rounded values do not sum up to zero, which a bright window without contrast would make large.
+TEST(WindowCorrelation, HoldsForBrightWindowsWithLittleContrast) {
+  ImagePool pool;
+  const Image then = noise(6, pool, 240, 250), now = noise(7, pool, 240, 250);
+  const CorrelatedImage correlated(now);
+  for (int x = 0; x < kWidth - kSide; ++x) {
+    const auto pattern = WindowPattern::sample(then, middleOf(x, 3), 1);
+    ASSERT_TRUE(pattern);
+    EXPECT_NEAR(correlated.correlation(*pattern, middleOf(x, 9)).value_or(9), correlationOf(then, x, 3, now, x, 9),
+                1e-3);
+  }
+}
+
 TEST(WindowCorrelation, APatternMayBeSeenFromNearer) {
   ImagePool pool;
   const Image far = noise(3, pool);
@@ -70,7 +82,7 @@ TEST(WindowCorrelation, APatternMayBeSeenFromNearer) {
 
 TEST(WindowCorrelation, ThereIsNoneBeyondTheBorderAndNothingToSeeWithoutTexture) {
   ImagePool pool;
-  const Image image = noise(4, pool), uniform = noise(5, pool, true);
+  const Image image = noise(4, pool), uniform = noise(5, pool, 128, 128);
   EXPECT_FALSE(WindowPattern::sample(image, middleOf(-1, 3), 1));
   EXPECT_FALSE(WindowPattern::sample(image, middleOf(kWidth - kSide + 1, 3), 1));
   EXPECT_FALSE(WindowPattern::sample(uniform, middleOf(5, 5), 1));
