@@ -1,5 +1,6 @@
 #include "apps/pipeline/stage_fallbacks.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -60,6 +61,24 @@ EstimatesPtr lostEstimates(const FrameMeasurements& measurements) {
   Estimates estimates;
   estimates.online.head = lost(measurements.head);
   return shared(std::move(estimates));
+}
+
+void rememberExistence(const FrameEstimate& frame, KnownExistence& known) {
+  constexpr std::size_t kMostTracks = 1000;
+  for (const ObjectEstimate& object : frame.objects) known[object.track] = object.existence_probability;
+  while (known.size() > kMostTracks) known.erase(known.begin());
+}
+
+EstimatesPtr withoutShapes(const Estimates& estimates, const KnownExistence& known) {
+  Estimates without = estimates;
+  const auto keepKnown = [&](FrameEstimate& frame) {
+    std::erase_if(frame.objects, [&](const ObjectEstimate& object) { return !known.contains(object.track); });
+    for (ObjectEstimate& object : frame.objects) object.existence_probability = known.at(object.track);
+  };
+  keepKnown(without.online);
+  std::ranges::for_each(without.settled, keepKnown);
+  std::ranges::for_each(without.finals, keepKnown);
+  return shared(std::move(without));
 }
 
 }  // namespace motorcade

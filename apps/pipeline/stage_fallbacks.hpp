@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "core/messages.hpp"
@@ -19,5 +20,14 @@ SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_n
 FrameMeasurementsPtr cameraAlone(const SceneMotion& motion);
 /// Estimates without a pose. The publisher knows the last pose, and predicts.
 EstimatesPtr lostEstimates(const FrameMeasurements& measurements);
+
+/// Each track's probability of existence when the shapes were last estimated.
+using KnownExistence = std::map<TrackId, double>;
+
+/// Adds the newest frame's objects to `known`, which keeps the youngest thousand tracks.
+void rememberExistence(const FrameEstimate& frame, KnownExistence& known);
+/// The estimates without shapes. Objects keep the probability of existence that is known of them; others are dropped,
+/// because only the shapes tell whether they are there.
+EstimatesPtr withoutShapes(const Estimates& estimates, const KnownExistence& known);
 
 }  // namespace motorcade

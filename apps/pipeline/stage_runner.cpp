@@ -106,7 +106,8 @@ void StageRunner::shapeObjects(Job& job) {
       [&] {
         return stages_.object_shapes({job.features, job.motion, job.measurements}, job.estimates);
       },
-      [&] { return job.estimates; });
+      [&] { return withoutShapes(*job.estimates, existence_); });
+  rememberExistence(job.estimates->online, existence_);
 }
 
 std::vector<FrameEstimate> StageRunner::finish() {

@@ -4,6 +4,7 @@
 
 #include "apps/pipeline/job.hpp"
 #include "apps/pipeline/log_callback.hpp"
+#include "apps/pipeline/stage_fallbacks.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "core/messages.hpp"
 #include "core/se3.hpp"
@@ -33,7 +34,8 @@ class StageRunner {
 
   Stages stages_;
   LogCallback log_;
-  SE3 last_motion_;  // of `segmentSceneFlow` alone
+  SE3 last_motion_;           // of `segmentSceneFlow` alone
+  KnownExistence existence_;  // of `shapeObjects` alone
 };
 
 }  // namespace motorcade

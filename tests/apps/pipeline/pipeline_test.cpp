@@ -19,9 +19,9 @@
 namespace motorcade {
 namespace {
 
-constexpr std::array kAllStages = {Stage::kPrepare,     Stage::kStereoMatching,
-                                   Stage::kOpticalFlow, Stage::kSceneFlowSegmentation,
-                                   Stage::kTracking,    Stage::kIncrementalOptimization};
+constexpr std::array kAllStages = {
+    Stage::kPrepare,  Stage::kStereoMatching,          Stage::kOpticalFlow, Stage::kSceneFlowSegmentation,
+    Stage::kTracking, Stage::kIncrementalOptimization, Stage::kObjectShapes};
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
@@ -124,6 +124,19 @@ TEST_P(PipelineThreads, AFrameForWhichAStageLacksMemoryIsLostAndTheRunGoesOn) {
     EXPECT_FALSE(run.results[3].problem.empty());
     EXPECT_TRUE(run.results[4].problem.empty());
   }
+}
+
+TEST(Pipeline, AFrameWhoseShapesFailReportsOnlyObjectsOfKnownExistence) {
+  ToyStages toys{.work = [](Stage stage, FrameId frame) {
+    if (stage == Stage::kObjectShapes && (frame.value == 3 || frame.value == 6))
+      throw std::runtime_error("toy trouble");
+  }};
+  toys.object_from = {3};
+  Pipeline pipeline({}, toys.stages());
+  const Outcome run = runThrough(pipeline, framesFrom0To(10));
+  EXPECT_THAT(run.results[3].online.objects, testing::IsEmpty());  // nothing is known of the new object yet
+  ASSERT_EQ(run.results[6].online.objects.size(), 1u);
+  EXPECT_EQ(run.results[6].online.objects[0].existence_probability, 0.75);
 }
 
 TEST(Pipeline, FramesSettleAtTheLatestWhenTheyLeaveTheWindow) {

@@ -29,6 +29,7 @@ struct ToyStages {
   double traveled_m = 0;
   std::vector<FrameEstimate> window{};  // keeps two frames
   bool settles = true;                  // the frame before the newest has settled
+  FrameId object_from{1000};            // first frame with an object
   bool branches_met_wrongly = false;
 
   Stages stages() {
@@ -45,7 +46,9 @@ struct ToyStages {
 
   EstimatesPtr shape(const SceneMotionPtr& motion, const EstimatesPtr& estimates) {
     work(Stage::kObjectShapes, motion->head.frame);
-    return estimates;
+    Estimates shaped = *estimates;
+    for (ObjectEstimate& object : shaped.online.objects) object.existence_probability = 0.75;
+    return std::make_shared<const Estimates>(shaped);
   }
   FeaturesPtr prepare(const StereoFramePtr& frame) {
     work(Stage::kPrepare, frame->head.frame);
@@ -86,6 +89,7 @@ struct ToyStages {
     Estimates result;
     result.online.head = measurements->head;
     result.online.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {0, 0, traveled_m});
+    if (result.online.head.frame >= object_from) result.online.objects.emplace_back().track = {1};
     window.push_back(result.online);
     if (settles && window.size() > 1) result.settled = {window[window.size() - 2]};
     if (window.size() > 2) {
