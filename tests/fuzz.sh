@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-10}
 targets=("${@:2}")
-[[ ${#targets[@]} -gt 0 ]] || targets=(bag calibration configuration image labels manifest oxts pose_graph rig run_tables times y4m)
+[[ ${#targets[@]} -gt 0 ]] || targets=(bag calibration configuration image labels manifest oxts pose_graph rig run_tables times vehicle_motion y4m)
 apps/setup.sh clang libclang-rt-dev llvm
 cmake --preset fuzz --log-level=WARNING >/dev/null
 cmake --build --preset fuzz

@@ -1,5 +1,8 @@
-// Prints each number of a drive's results with all its bits: print_results DRIVE. For comparisons between processors.
+// Prints each number of a drive's results with all its bits: print_results DRIVE [FRAMES [THREADS]]. For comparisons
+// between processors.
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <thread>
 
 #include <motorcade/motorcade.hpp>
@@ -32,10 +35,13 @@ void print(const motorcade::Result& result) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  motorcade::Recording drive(argc == 2 ? argv[1] : "");
-  motorcade::Tracker tracker(drive.camera(), {.policy = motorcade::Tracker::Policy::kReplay, .masks = true});
+  motorcade::Recording drive(argc > 1 ? argv[1] : "");
+  const std::int64_t frames = argc > 2 ? std::min<std::int64_t>(std::stoll(argv[2]), drive.size()) : drive.size();
+  motorcade::Tracker::Options options{.policy = motorcade::Tracker::Policy::kReplay, .masks = true};
+  if (argc > 3) options.threads = std::stoi(argv[3]);
+  motorcade::Tracker tracker(drive.camera(), options);
   std::jthread camera([&] {
-    for (std::int64_t i = 0; i < drive.size(); ++i) tracker.push(drive.read(i));
+    for (std::int64_t i = 0; i < frames; ++i) tracker.push(drive.read(i));
     tracker.close();
   });
   while (!tracker.done())
