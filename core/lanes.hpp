@@ -144,7 +144,7 @@ HWY_INLINE unsigned bitsOf(const FloatMask& mask) {
     bits |= static_cast<unsigned>(_mm_movemask_ps(__m128(mask.part[i]))) << 4 * i;
 #else
     const auto one = mask.part[i] & FloatMask::Part{1, 2, 4, 8};
-    bits |= static_cast<unsigned>((one[0] | one[1]) | (one[2] | one[3])) << 4 * i;
+    bits |= static_cast<unsigned>(vaddvq_s32(int32x4_t(one))) << 4 * i;
 #endif
   }
   return bits;

@@ -78,6 +78,9 @@ HWY_INLINE Words magnitude(const Words& x) {
 #if HWY_TARGET == HWY_AVX2
   return Words::each<std::int16_t>(
       [](const Words::Part& part) HWY_ATTR { return Words::Part(_mm256_abs_epi16(__m256i(part))); }, x);
+#elif HWY_ARCH_ARM
+  return Words::each<std::int16_t>(
+      [](const Words::Part& part) HWY_ATTR { return Words::Part(vabsq_s16(int16x8_t(part))); }, x);
 #else
   return greater(x, -x);
 #endif
@@ -119,6 +122,11 @@ HWY_INLINE FourSums totals(const WordSums& a, const WordSums& b, const WordSums&
   const auto sums = [](const auto& x, const auto& y) HWY_ATTR { return MOTORCADE_X86(hadd_epi32, x, y); };
   const __m256i pairs = sums(sums(a.part[0], b.part[0]), sums(c.part[0], d.part[0]));
   return FourSums(_mm256_castsi256_si128(pairs)) + FourSums(_mm256_extracti128_si256(pairs, 1));
+#elif HWY_ARCH_ARM
+  const auto sums = [](const WordSums& x, const WordSums& y) HWY_ATTR {
+    return vpaddq_s32(int32x4_t(x.part[0] + x.part[1]), int32x4_t(y.part[0] + y.part[1]));
+  };
+  return FourSums(vpaddq_s32(sums(a, b), sums(c, d)));
 #else
   const auto sums = [](const WordSums& x, const WordSums& y) HWY_ATTR {
     const FourSums u = x.part[0] + x.part[1], v = y.part[0] + y.part[1];
@@ -142,6 +150,8 @@ HWY_INLINE std::int16_t leastOf(const Words& x) {
   least = least < other ? least : other;
 #if MOTORCADE_SSE4
   return static_cast<std::int16_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(__m128i(least))));
+#elif HWY_ARCH_ARM
+  return vminvq_s16(int16x8_t(least));
 #else
   const auto takeLess = [&least](const EightWords& moved) HWY_ATTR { least = least < moved ? least : moved; };
   takeLess(__builtin_shufflevector(least, least, 4, 5, 6, 7, 0, 1, 2, 3));
@@ -160,6 +170,9 @@ HWY_INLINE Bytes bitCounts(const Bytes& x) {
                           HWY_ATTR { return Bytes::Part(MOTORCADE_X86(shuffle_epi8, of_nibble, nibbles)); };
   const Bytes of_nibble = load(kOfNibble), low = x & 0x0F, high = (x >> 4) & 0x0F;
   return Bytes::each<std::uint8_t>(counts, of_nibble, low) + Bytes::each<std::uint8_t>(counts, of_nibble, high);
+#elif HWY_ARCH_ARM
+  return Bytes::each<std::uint8_t>(
+      [](const Bytes::Part& part) HWY_ATTR { return Bytes::Part(vcntq_u8(uint8x16_t(part))); }, x);
 #else
   const Bytes of_two = x - ((x >> 1) & 0x55), of_four = (of_two & 0x33) + ((of_two >> 2) & 0x33);
   return (of_four + (of_four >> 4)) & 0x0F;
@@ -227,8 +240,12 @@ HWY_INLINE Words differencesOfEight(const std::uint8_t* p, const std::uint8_t* e
   }
   return sums;
 #else
-  Words sums{};
-  for (int k = 0; k < 8; ++k) sums += magnitude(wordPixels(p + k) - allWords(eight[k]));
+  Words sums;
+  for (int i = 0; i < kParts; ++i) {
+    uint16x8_t sum = vdupq_n_u16(0);
+    for (int k = 0; k < 8; ++k) sum = vabal_u8(sum, vld1_u8(p + 8 * i + k), vdup_n_u8(eight[k]));
+    sums.part[i] = Words::Part(sum);
+  }
   return sums;
 #endif
 }
