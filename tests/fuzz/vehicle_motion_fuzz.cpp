@@ -10,8 +10,10 @@ using namespace motorcade;
 /// Samples of the vehicle's own motion, as a table or as packets, beside images of one second.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::MemoryFile file;
-  constexpr std::array<std::string_view, 6> kNoLine{": is empty",         ": begins with '", ": has no sample",
-                                                    ", are not those of", ": packet ",       " frames, there are "};
+  constexpr std::array<std::string_view, 7> kNoLine{": is empty",         ": begins with '",
+                                                    ": has no sample",    ", are not those of",
+                                                    ": packet ",          ", whose times are not known",
+                                                    " frames, there are "};
   Sequence sequence;
   sequence.stamps = {{0}, {1'000'000'000}};
   const auto& path = file.holding(fuzz::textOf(data, size));
