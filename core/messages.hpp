@@ -66,6 +66,7 @@ struct FrameInputs {
   /// The vehicle's own motion, of which `vehicle_samples` were known when the pair came. Null: nothing tells it.
   std::shared_ptr<const VehicleMotionLog> vehicle_motion{};
   std::uint64_t vehicle_samples = 0;
+  std::int64_t clock_ahead_ns = 0;  // from the camera's clock, which was set back, to the frames' time
 };
 
 /// A rectified stereo pair as it enters the pipeline.

@@ -69,6 +69,7 @@ Admission Intake::judge(StereoFrame frame) {
   const auto time = clock_.read(frame.head.stamp);
   if (!time) return refuse(frame, step_ns, clock_.refusedFarAhead() ? Admission::kFarAhead : Admission::kOutOfOrder);
   frame.head.stamp = *time;
+  frame.inputs.clock_ahead_ns = clock_.ahead_ns();
   clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
   const Admission admission = enter(std::move(frame));
   if (isTaken(admission)) received_.fetch_add(1, std::memory_order_relaxed);

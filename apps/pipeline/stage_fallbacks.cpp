@@ -43,10 +43,11 @@ OpticalFlowPtr noFlow(const FeaturesPtr& features) {
   return shared(OpticalFlow{.features = features, .observations = {}});
 }
 
-SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_now) {
+SceneMotionPtr predictedMotion(const StereoFrame& frame, const SceneMotion& before) {
   SceneMotion predicted;
   predicted.head = frame.rejected() ? frame.head : lost(frame.head);
-  predicted.odometry = {T_previous_now, unknownMotionCovariance()};
+  predicted.head.segment = before.head.segment;
+  predicted.odometry = {before.odometry.T_previous_now, unknownMotionCovariance()};
   return shared(std::move(predicted));
 }
 

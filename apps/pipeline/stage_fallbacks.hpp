@@ -14,8 +14,8 @@ namespace motorcade {
 FeaturesPtr rejectedFeatures(const StereoFrame& frame, const std::string& problem);
 StereoMatchesPtr noMatches(const FeaturesPtr& features);
 OpticalFlowPtr noFlow(const FeaturesPtr& features);
-/// No points and no components; the camera moves as `T_previous_now` predicts.
-SceneMotionPtr predictedMotion(const StereoFrame& frame, const SE3& T_previous_now);
+/// No points and no components; the camera moves as in the frame before, in the same segment.
+SceneMotionPtr predictedMotion(const StereoFrame& frame, const SceneMotion& before);
 /// The camera's motion without objects.
 FrameMeasurementsPtr cameraAlone(const SceneMotion& motion);
 /// Estimates without a pose. The publisher knows the last pose, and predicts.

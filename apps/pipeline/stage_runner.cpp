@@ -83,8 +83,8 @@ void StageRunner::trackFlow(Job& job) {
 void StageRunner::segmentSceneFlow(Job& job) {
   job.motion = attempt(
       job, Stage::kSceneFlowSegmentation, [&] { return stages_.scene_flow_segmentation(job.matches, job.flow); },
-      [&] { return predictedMotion(*job.features->frame, last_motion_); });
-  last_motion_ = job.motion->odometry.T_previous_now;
+      [&] { return predictedMotion(*job.features->frame, *last_motion_); });
+  last_motion_ = job.motion;
 }
 
 void StageRunner::trackObjects(Job& job) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "apps/pipeline/job.hpp"
@@ -7,7 +8,7 @@
 #include "apps/pipeline/stage_fallbacks.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "core/messages.hpp"
-#include "core/se3.hpp"
+#include "frontend/messages.hpp"
 
 namespace motorcade {
 
@@ -34,8 +35,8 @@ class StageRunner {
 
   Stages stages_;
   LogCallback log_;
-  SE3 last_motion_;           // of `segmentSceneFlow` alone
-  KnownExistence existence_;  // of `shapeObjects` alone
+  SceneMotionPtr last_motion_ = std::make_shared<SceneMotion>();  // of `segmentSceneFlow` alone
+  KnownExistence existence_;                                      // of `shapeObjects` alone
 };
 
 }  // namespace motorcade

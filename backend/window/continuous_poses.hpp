@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -10,7 +11,8 @@ namespace motorcade {
 
 /// Poses of camera and objects as they are published. Each frame corrects the whole past, and a correction published as
 /// it is would look like a motion. So a published pose moves by the estimated motion since, and corrections are added
-/// gradually, over `correction_s`; 0 publishes each pose as it is estimated.
+/// gradually, over `correction_s`; 0 publishes each pose as it is estimated. Covariances contain what is still to be
+/// added: a pose that is known to be off by d has the expected squared error Sigma + d d'.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
@@ -20,8 +22,9 @@ class ContinuousPoses {
     std::function<std::optional<SE3>(FrameId)> camera;
     std::function<std::optional<SE3>(TrackId, FrameId)> object;
   };
-  /// Changes the poses of the newest frame. Objects keep their place relative to the camera.
-  void operator()(FrameEstimate& online, const EarlierPoses& earlier);
+  /// Changes the poses of the newest frame and their covariances. Objects keep their place relative to the camera. The
+  /// covariance of the camera's motion begins at `motion_begin`.
+  void operator()(FrameEstimate& online, const EarlierPoses& earlier, std::optional<FrameId> motion_begin);
 
  private:
   struct Published {
@@ -32,9 +35,12 @@ class ContinuousPoses {
   SE3 continued(const Published& last, const SE3& then, const SE3& now, const SE3& target, Timestamp stamp,
                 double correction_s) const;
   void continueCamera(FrameEstimate& online, const EarlierPoses& earlier);
+  void widenCamera(CameraCovariances& covariances, const SE3& estimated, const EarlierPoses& earlier,
+                   std::optional<FrameId> motion_begin) const;
+  const Published* cameraIn(FrameId frame) const;
 
   double correction_s_;
-  std::optional<Published> last_camera_;
+  std::deque<Published> cameras_;  // the newest ones
   std::map<TrackId, Published> last_;
 };
 

@@ -36,7 +36,6 @@ void EstimateReader::consider(ObjectCovariances& known, const ObjectTrack& track
         std::hypot(*known.speed_sigma_mps, (velocity.transpose() * velocity_cam.stableNormalized()).norm());
 }
 
-/// Frame at which the camera's motion up to this one begins.
 std::optional<FrameId> EstimateReader::startOfMotion(FrameId frame) const {
   const auto after = window_.frames().upper_bound(FrameId{frame.value - motion_frames_});
   if (after == window_.frames().begin()) return std::nullopt;

@@ -16,10 +16,11 @@ class EstimateReader {
   std::optional<ObjectCovariances> covariances(const ObjectTrack& track, FrameId frame) const;
   /// Poses and velocities as the graph is now, with the covariances that its records hold.
   FrameEstimate read(FrameId frame) const;
+  /// Frame at which the covariance of the camera's motion up to this one begins; empty where nothing links them.
+  std::optional<FrameId> startOfMotion(FrameId frame) const;
 
  private:
   CameraCovariances cameraCovariances(FrameId frame) const;
-  std::optional<FrameId> startOfMotion(FrameId frame) const;
   ObjectEstimate readObject(TrackId id, const ObjectTrack& track, FrameId frame) const;
 
   void consider(ObjectCovariances& covariances, const ObjectTrack& track, FrameId frame) const;

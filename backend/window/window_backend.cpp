@@ -31,8 +31,10 @@ class WindowBackend::Publisher {
       keepCovariances(measurements.head.frame);
     }
     estimates.online = reader_.read(measurements.head.frame);
-    continuous_(estimates.online, {.camera = [this](FrameId frame) { return earlierPose(frame); },
-                                   .object = [this](TrackId id, FrameId frame) { return earlierPose(id, frame); }});
+    continuous_(estimates.online,
+                {.camera = [this](FrameId frame) { return earlierPose(frame); },
+                 .object = [this](TrackId id, FrameId frame) { return earlierPose(id, frame); }},
+                reader_.startOfMotion(measurements.head.frame));
     for (const FrameId frame : settling_(window_->frames())) estimates.settled.push_back(reader_.read(frame));
     while (params_.window_frames > 0 && window_->frames().size() > static_cast<std::size_t>(params_.window_frames)) {
       estimates.finals.push_back(reader_.read(window_->frames().begin()->first));

@@ -33,7 +33,7 @@ class CameraOdometry {
   CameraOdometry(const EgoMotionEstimator::Params& params, const StereoCamera& camera) : ego_motion_(params, camera) {}
 
   /// Takes the inputs that come with the next frame.
-  void hear(const FrameInputs& inputs) { vehicle_.hear(inputs); }
+  void hear(const FrameInputs& inputs, Timestamp frame) { vehicle_.hear(inputs, frame); }
   /// Predicts the motion since the last frame that was seen: by the vehicle's own sensors, else at the velocity
   /// measured last, or standing still while none is known.
   PredictedMotion predict(Timestamp stamp) const;

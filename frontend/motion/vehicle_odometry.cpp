@@ -1,5 +1,6 @@
 #include "frontend/motion/vehicle_odometry.hpp"
 
+#include <cmath>
 #include <span>
 
 namespace motorcade {
@@ -9,6 +10,13 @@ namespace {
 // twenty in which they agreed.
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
+/// Samples are late by less: a larger distance from their frame shows that a clock was set.
+constexpr double kClearlyApart_s = 0.25;
+
+double secondsApart(Timestamp sample, std::int64_t ahead_ns, Timestamp frame) {
+  return 1e-9 *
+         std::abs(static_cast<double>(sample.ns) + static_cast<double>(ahead_ns) - static_cast<double>(frame.ns));
+}
 
 /// Motion of a camera that looks ahead, or the mean over pieces.
 VehicleSensors::Motion motionOf(const SE3& T_then_now, double dt_s) {
@@ -25,10 +33,15 @@ VehicleSensors::Motion motionOf(std::span<const VehicleSamples::Piece> pieces, d
 
 }  // namespace
 
-void VehicleOdometry::hear(const FrameInputs& inputs) {
+void VehicleOdometry::hear(const FrameInputs& inputs, Timestamp frame) {
   if (!inputs.vehicle_motion || inputs.vehicle_samples <= heard_) return;
-  for (const VehicleMotionSample& sample : inputs.vehicle_motion->read(heard_, inputs.vehicle_samples))
+  for (VehicleMotionSample sample : inputs.vehicle_motion->read(heard_, inputs.vehicle_samples)) {
+    const double apart_s = secondsApart(sample.stamp, ahead_ns_, frame);
+    if (apart_s > kClearlyApart_s && secondsApart(sample.stamp, inputs.clock_ahead_ns, frame) < apart_s)
+      ahead_ns_ = inputs.clock_ahead_ns;
+    sample.stamp.ns += ahead_ns_;
     samples_.add(sample);
+  }
   heard_ = inputs.vehicle_samples;
 }
 

@@ -13,8 +13,9 @@ namespace motorcade {
 /// and again when they have agreed with it for a while. Call it in frame order.
 class VehicleOdometry {
  public:
-  /// Takes the samples that came with a frame.
-  void hear(const FrameInputs& inputs);
+  /// Takes the samples that came with the frame of this time. If the camera's clock was set back, and that of the
+  /// samples with it, their stamps follow.
+  void hear(const FrameInputs& inputs, Timestamp frame);
   /// Motion between two moments; empty where samples are missing, or are not believed.
   std::optional<UncertainMotion> motion(Timestamp from, Timestamp to) const;
   /// Compares the sensors with a motion that the camera measured, from one frame to the next.
@@ -33,7 +34,8 @@ class VehicleOdometry {
   VehicleSamples samples_;
   VehicleCalibration calibration_;
   std::uint64_t heard_ = 0;
-  double agreement_ = 0.9;  // share of the last frames in which they agreed with the camera
+  std::int64_t ahead_ns_ = 0;  // from the samples' clock to the frames' time
+  double agreement_ = 0.9;     // share of the last frames in which they agreed with the camera
   VehicleSensors::Motion told_, seen_;
   int disputed_ = 0;  // frames since they agreed
   bool believed_ = true;

@@ -81,7 +81,7 @@ SceneFlowSegmentation::SceneFlowSegmentation(const Params& params, const StereoC
 /// those that are observed and belong to the world.
 SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo, const OpticalFlowPtr& flow) {
   const StereoFrame& frame = *stereo->features->frame;
-  odometry_.hear(frame.inputs);
+  odometry_.hear(frame.inputs, frame.head.stamp);
   if (frame.rejected() || flow->observations.empty()) return passOver(frame);
 
   const MeasuredFrame measured = measure(*stereo, *flow);

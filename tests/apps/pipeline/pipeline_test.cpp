@@ -139,6 +139,16 @@ TEST(Pipeline, AFrameWhoseShapesFailReportsOnlyObjectsOfKnownExistence) {
   EXPECT_EQ(run.results[6].online.objects[0].existence_probability, 0.75);
 }
 
+TEST(Pipeline, AFrameWhoseSegmentationFailsStaysInTheSegment) {
+  ToyStages toys{.work = [](Stage stage, FrameId frame) {
+    if (stage == Stage::kSceneFlowSegmentation && frame.value == 3) throw std::runtime_error("toy trouble");
+  }};
+  toys.segment = 2;
+  Pipeline pipeline({}, toys.stages());
+  for (const PipelineResult& result : runThrough(pipeline, framesFrom0To(5)).results)
+    EXPECT_EQ(result.online.head.segment, 2);
+}
+
 TEST(Pipeline, FramesSettleAtTheLatestWhenTheyLeaveTheWindow) {
   ToyStages toys{.settles = false};
   Pipeline pipeline({}, toys.stages());

@@ -30,6 +30,7 @@ struct ToyStages {
   std::vector<FrameEstimate> window{};  // keeps two frames
   bool settles = true;                  // the frame before the newest has settled
   FrameId object_from{1000};            // first frame with an object
+  int segment = 0;                      // of all frames
   bool branches_met_wrongly = false;
 
   Stages stages() {
@@ -72,6 +73,7 @@ struct ToyStages {
     order_of_motion.push_back(frame.head.frame.value);
     SceneMotion result;
     result.head = frame.head;
+    result.head.segment = segment;
     result.odometry.T_previous_now = SE3(Eigen::Matrix3d::Identity(), {0, 0, order_of_motion.size() > 1 ? 1.0 : 0.0});
     return std::make_shared<const SceneMotion>(result);
   }

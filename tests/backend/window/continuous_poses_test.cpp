@@ -13,7 +13,8 @@ SE3 at(double x_m, double y_m = 0) { return {Eigen::Matrix3d::Identity(), {x_m, 
 
 /// A camera and an object that move by 1 m in each frame, at 10 Hz; all estimates are shifted at once in frame 10.
 struct Drive {
-  static constexpr int kShifted = 10;
+  static constexpr int kShifted = 10, kMotionFrames = 5;
+  inline static const Matrix6d kCovariance = 1e-4 * Matrix6d::Identity();
   double shift_m = 0.5;
 
   SE3 camera(int frame, int now) const { return at(frame, now < kShifted ? 0 : shift_m); }
@@ -30,9 +31,11 @@ struct Drive {
       ObjectEstimate& seen = online.objects.emplace_back();
       seen.track = TrackId{3};
       seen.T_world_body = object(now, now);
+      seen.covariance = online.camera_covariances.motion = online.camera_covariances.pose = kCovariance;
       continuous(online,
                  {.camera = [&](FrameId frame) { return camera(static_cast<int>(frame.value), now); },
-                  .object = [&](TrackId, FrameId frame) { return object(static_cast<int>(frame.value), now); }});
+                  .object = [&](TrackId, FrameId frame) { return object(static_cast<int>(frame.value), now); }},
+                 now >= kMotionFrames ? std::optional(FrameId{now - kMotionFrames}) : std::nullopt);
       all.push_back(online);
     }
     return all;
@@ -61,6 +64,27 @@ TEST(ContinuousPoses, ObjectsComeToWhereTheyAreSeenFromTheCamera) {
                         published[i - 1].objects[0].T_world_body.translation())
                            .y()),
               0.2);
+}
+
+/// A pose's error over its deviation, along y.
+double sigmas(double error_m, const std::optional<Matrix6d>& covariance) {
+  return std::abs(error_m) / std::sqrt((*covariance)(1, 1));
+}
+
+TEST(ContinuousPoses, CovariancesContainWhatIsStillToBeAdded) {
+  const Drive drive;
+  const auto published = drive.published(0.5);
+  const auto y = [&](std::size_t frame) { return published[frame].T_world_cam.translation().y(); };
+  for (std::size_t frame = Drive::kShifted; frame < published.size(); ++frame) {
+    const FrameEstimate& now = published[frame];
+    EXPECT_LE(sigmas(y(frame) - drive.shift_m, now.camera_covariances.pose), 1) << frame;
+    const double seen_m = now.objects[0].T_world_body.translation().y() - y(frame);
+    EXPECT_LE(sigmas(seen_m, now.objects[0].covariance), 1) << frame;
+    EXPECT_LE(sigmas(y(frame) - y(frame - Drive::kMotionFrames), now.camera_covariances.motion), 1) << frame;
+  }
+  EXPECT_GT(sigmas(y(Drive::kShifted) - drive.shift_m, Drive::kCovariance), 20) << "there is something to be added";
+  EXPECT_NEAR((*published.back().camera_covariances.pose)(1, 1), 1e-4, 1e-6);
+  EXPECT_NEAR((*published.back().camera_covariances.motion)(1, 1), 1e-4, 1e-6);
 }
 
 TEST(ContinuousPoses, WithoutATimeAreThoseEstimated) {

@@ -45,7 +45,7 @@ class Sensors {
     for (auto& sample : samples) spoil(sample);
     Inputs inputs(samples);
     for (int frame = 0; frame < frames; ++frame) {
-      odometry_.hear(inputs.upTo(drive_.stampOf(frame)));
+      odometry_.hear(inputs.upTo(drive_.stampOf(frame)), drive_.stampOf(frame));
       if (frame > 0)
         odometry_.compare(drive_.stampOf(frame - 1), drive_.stampOf(frame),
                           asMeasured(drive_.motion(frame - 1, frame)));
@@ -96,7 +96,7 @@ TEST(VehicleOdometry, WhatIsDisputedForFiveSecondsIsLeftOut) {
   VehicleOdometry odometry;
   const SimulatedVehicle drive(1, 20, {});
   Inputs inputs(drive.samples);
-  odometry.hear(inputs.upTo(drive.stampOf(20)));
+  odometry.hear(inputs.upTo(drive.stampOf(20)), drive.stampOf(20));
   for (int i = 0; i < 49; ++i) odometry.dispute();
   EXPECT_TRUE(odometry.motion(drive.stampOf(3), drive.stampOf(5)));
   odometry.dispute();
@@ -112,7 +112,7 @@ class InTheDark : public testing::Test {
     Inputs inputs(std::move(samples));
     for (int frame = 0; frame < kSeen + kDark; ++frame) {
       const Timestamp stamp = drive_.stampOf(frame);
-      odometry_.hear(inputs.upTo(stamp));
+      odometry_.hear(inputs.upTo(stamp), stamp);
       if (frame >= kSeen)
         steps_.push_back(odometry_.passOver(stamp));
       else
@@ -137,6 +137,37 @@ TEST_F(InTheDark, TheCameraGoesOnAsTheVehicleDoes) {
   const Vector6d error = (drive_.motion(kSeen - 1, kSeen + kDark - 1).inverse() * steppedTo(kDark)).log();
   EXPECT_LT(error.head<3>().norm(), 0.5);  // of 30 m
   EXPECT_TRUE(odometry_.motionKnown(drive_.stampOf(kSeen + kDark)));
+}
+
+/// The clock that stamps samples is set back by two seconds in frame 20, or that of the camera alone.
+class AfterAClockWasSetBack : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(OfBothAndOfTheCamera, AfterAClockWasSetBack, testing::Bool());
+
+TEST_P(AfterAClockWasSetBack, SamplesBelongToTheirFrames) {
+  constexpr std::int64_t kBack_ns = 2'000'000'000;
+  constexpr int kFrames = 40, kSet = 20;
+  const SimulatedVehicle drive(3, kFrames, {});
+  auto log = std::make_shared<VehicleMotionLog>();
+  VehicleOdometry odometry;
+  std::size_t next = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const Timestamp now = SimulatedVehicle::stampOf(frame);
+    for (; next < drive.samples.size() && drive.samples[next].stamp <= now; ++next) {
+      VehicleMotionSample sample = drive.samples[next];
+      if (GetParam() && sample.stamp > SimulatedVehicle::stampOf(kSet)) sample.stamp.ns -= kBack_ns;
+      log->add(sample);
+    }
+    odometry.hear({.ignored = {},
+                   .vehicle_motion = log,
+                   .vehicle_samples = next,
+                   .clock_ahead_ns = frame > kSet + 4 ? kBack_ns : 0},
+                  now);
+    const auto step = frame > 0 ? odometry.motion(SimulatedVehicle::stampOf(frame - 1), now) : std::nullopt;
+    if (frame > 0 && (frame <= kSet || frame > kSet + 5)) {
+      ASSERT_TRUE(step) << frame;
+      EXPECT_NEAR(step->T_then_now.translation().norm(), drive.motion(frame - 1, frame).translation().norm(), 0.1);
+    }
+  }
 }
 
 TEST_F(InTheDark, StepsAddUpToWhatIsKnownOfTheWhole) {
@@ -193,7 +224,7 @@ TEST(CameraOdometryWithSensors, ACarThatStandsIsSeenToStand) {
   for (int i = 0; i <= 200; ++i) samples.push_back({.stamp = {i * 50'000'000LL}});
   Inputs inputs(samples);
   CameraOdometry odometry({}, test::kRig);
-  odometry.hear(inputs.upTo({10'000'000'000LL}));
+  odometry.hear(inputs.upTo({10'000'000'000LL}), {10'000'000'000LL});
   odometry.add({0}, {.T_seen_now = SE3{}, .inliers = {}});
   test::Noise noise(5);
   for (int number = 1; number < 80; ++number) {
@@ -219,7 +250,7 @@ TEST(CameraOdometryWithSensors, WhatIsNotLinkedByImagesStaysInTheSegment) {
   const SimulatedVehicle drive(4, 12, {});
   Inputs inputs(drive.samples);
   CameraOdometry odometry({}, test::kRig);
-  odometry.hear(inputs.upTo(drive.stampOf(11)));
+  odometry.hear(inputs.upTo(drive.stampOf(11)), drive.stampOf(11));
   odometry.add(drive.stampOf(0), {.T_seen_now = SE3{}, .inliers = {}});
   const auto predicted = odometry.predict(drive.stampOf(10));
   StereoFrame frame;
@@ -237,7 +268,7 @@ TEST(CameraOdometryWithSensors, AStartInTheDarkIsDrivenAsToldUntilSomethingIsSee
   const SimulatedVehicle drive(4, 12, {});
   Inputs inputs(drive.samples);
   CameraOdometry odometry({}, test::kRig);
-  odometry.hear(inputs.upTo(drive.stampOf(12)));
+  odometry.hear(inputs.upTo(drive.stampOf(12)), drive.stampOf(12));
   SE3 T_start_now;
   for (int frame = 0; frame < 10; ++frame)
     T_start_now = T_start_now * odometry.passOver(drive.stampOf(frame)).T_previous_now;
