@@ -30,13 +30,16 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
     camera.weak = m.head.status != FrameStatus::kGood || seen_again < kFewStatic;
     link(m, camera);
   }
-  if (showsPoints(m)) last_seen_ = {m.head.frame, SE3{}};
+  if (!showsPoints(m)) return camera;
+  last_seen_ = {m.head.frame, SE3{}};
+  unseen_.clear();
   return camera;
 }
 
 /// Links a camera pose that points hardly tell: by odometry since points were last seen, and by the vehicle's own
-/// sensors since the previous frame, if there are any. Without sensors, unseen frames lie where a steady motion puts
-/// them. An unknown motion begins a new part: behind a weak factor the rest of the path would float.
+/// sensors since the previous frame, if there are any. Without sensors, unseen frames lie on a steady motion as soon as
+/// it is measured where it led. An unknown motion begins a new part: behind a weak factor the rest of the path would
+/// float.
 void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto& [frame_before, before] = *frames_.rbegin();
   camera.part = before.part;
@@ -53,14 +56,14 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto seen = frames_.find(last_seen_.frame);
   if (!showsPoints(m) || seen == frames_.end()) {
     const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry.covariance;
-    if (!told) addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
+    if (told) return;
+    const auto factor = addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
+    unseen_.push_back({factor, before.x, camera.x, before.head.stamp, m.head.stamp});
     return;
   }
   if (after_unseen && !told) {
-    const double dt_s = secondsBetween(before.head.stamp, m.head.stamp);
-    const SE3 steady =
-        scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen->second.head.stamp, m.head.stamp));
-    addOdometry(steady, unknownMotionCovariance(dt_s), before.x, camera.x);
+    unseen_.push_back({{}, before.x, camera.x, before.head.stamp, m.head.stamp});
+    moveSteadily(m.head.stamp, seen->second.head.stamp);
   }
   if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry.covariance, seen->second.x, camera.x);
   if (m.head.status == FrameStatus::kGood) moveStart(m.head.stamp, seen->second.head.stamp);
@@ -74,7 +77,7 @@ void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& cam
   } else {
     const std::optional<FactorId> link =
         addOdometry(m.odometry.T_previous_now, m.odometry.covariance, before.x, camera.x);
-    start_.links.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
+    start_.steps.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
   }
   if (!showsPoints(m)) return;
   if (start_.gauge) solver_.removeFactor(*start_.gauge);
@@ -83,14 +86,22 @@ void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& cam
 
 /// Extends the first measured motion, up to `now`, back over the frames before anything was seen.
 void CameraChain::moveStart(Timestamp now, Timestamp seen_first) {
-  for (const UnseenStart::Link& link : start_.links) {
-    if (secondsBetween(link.from, seen_first) > kMaxPrediction_s) continue;
-    const double dt_s = secondsBetween(link.from, link.to);
-    if (link.factor) solver_.removeFactor(*link.factor);
-    const SE3 steady = scaledMotion(last_seen_.T_seen_now, dt_s / secondsBetween(seen_first, now));
-    addOdometry(steady, unknownMotionCovariance(dt_s), link.before, link.now);
-  }
+  for (const PredictedStep& step : start_.steps)
+    if (secondsBetween(step.from, seen_first) <= kMaxPrediction_s)
+      replace(step, last_seen_.T_seen_now, secondsBetween(seen_first, now));
   start_ = {};
+}
+
+/// Spreads the motion that was measured over unseen frames evenly on them. The predictions knew less: they end in a
+/// camera that stands.
+void CameraChain::moveSteadily(Timestamp now, Timestamp seen_before) {
+  for (const PredictedStep& step : unseen_) replace(step, last_seen_.T_seen_now, secondsBetween(seen_before, now));
+}
+
+void CameraChain::replace(const PredictedStep& step, const SE3& motion, double motion_s) {
+  const double dt_s = secondsBetween(step.from, step.to);
+  if (step.factor) solver_.removeFactor(*step.factor);
+  addOdometry(scaledMotion(motion, dt_s / motion_s), unknownMotionCovariance(dt_s), step.before, step.now);
 }
 
 std::optional<FactorId> CameraChain::addGaugePrior(VariableId x, const SE3& mean) {

@@ -30,6 +30,7 @@ class CameraChain {
   void link(const FrameMeasurements& measurements, CameraRecord& camera);
   void linkUnseen(const FrameMeasurements& measurements, const CameraRecord& camera);
   void moveStart(Timestamp now, Timestamp seen_first);
+  void moveSteadily(Timestamp now, Timestamp seen_before);
   std::optional<FactorId> addGaugePrior(VariableId x, const SE3& mean);
   std::optional<FactorId> addOdometry(const SE3& T_before_now, const Matrix6d& covariance, VariableId before,
                                       VariableId now);
@@ -43,15 +44,20 @@ class CameraChain {
     SE3 T_seen_now;
   };
   LastSeen last_seen_;
+  /// A step to a frame without points, by a prediction.
+  struct PredictedStep {
+    std::optional<FactorId> factor;
+    VariableId before, now;
+    Timestamp from, to;
+  };
+  /// Replaces the prediction by a share of a motion that took `motion_s`.
+  void replace(const PredictedStep& step, const SE3& motion, double motion_s);
+
+  std::vector<PredictedStep> unseen_;  // since points were last seen
   /// Frames before the first with points: nothing tells how the camera moved in them.
   struct UnseenStart {
-    struct Link {
-      std::optional<FactorId> factor;
-      VariableId before, now;
-      Timestamp from, to;
-    };
     std::optional<FactorId> gauge;
-    std::vector<Link> links;
+    std::vector<PredictedStep> steps;
   };
   UnseenStart start_;
 };

@@ -93,6 +93,15 @@ PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   return predicted;
 }
 
+/// Motion ahead and in yaw that the prediction leaves out, as a twist: the camera may have stopped, or have gone on.
+/// The covariances of the steps add up to its square.
+Vector6d CameraOdometry::withheld(Timestamp stamp) const {
+  constexpr double kLongest_s = 60;  // nobody asks for more
+  if (!last_motion_ || last_dt_s_ <= 0) return Vector6d::Zero();
+  const double withheld_s = std::clamp(secondsBetween(measured_at_, stamp) - kMaxPrediction_s, 0.0, kLongest_s);
+  return withheld_s / last_dt_s_ * levelMotion(*last_motion_).log();
+}
+
 /// Time of the last frame that was seen, or of the first one of all.
 Timestamp CameraOdometry::toldSince(Timestamp stamp) const {
   return trail_.empty() ? first_stamp_.value_or(stamp) : trail_.newest().stamp;
@@ -142,7 +151,10 @@ Odometry CameraOdometry::passOver(Timestamp stamp) {
     const SE3 T_seen_before = predictedByCamera(before).T_seen_now;
     T_seen_now = T_seen_before_ * T_seen_before.inverse() * T_seen_now;
   }
-  Odometry odometry = stepTo(stamp, T_seen_now, unknownMotionCovariance(secondsBetween(before, stamp)), told);
+  const Vector6d withheld_before = withheld(before), withheld_now = withheld(stamp);
+  const Matrix6d covariance = unknownMotionCovariance(secondsBetween(before, stamp)) +
+                              withheld_now * withheld_now.transpose() - withheld_before * withheld_before.transpose();
+  Odometry odometry = stepTo(stamp, T_seen_now, covariance, told);
   odometry.T_previous_now = odometry.T_previous_now.normalized();
   if (told) odometry.covariance = odometry.vehicle->covariance;
   T_seen_before_ = T_seen_now;

@@ -68,6 +68,7 @@ class CameraOdometry {
   double sinceSeen_s(Timestamp stamp) const;
   PredictedMotion predictedByCamera(Timestamp stamp) const;
   Timestamp toldSince(Timestamp stamp) const;
+  Vector6d withheld(Timestamp stamp) const;
   Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
   std::optional<EgoMotion> againstVehicle(std::span<const PoseObservation> observations,
                                           const std::vector<PointLabel>& labels, const FrameHead& head) const;

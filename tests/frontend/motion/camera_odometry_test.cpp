@@ -1,5 +1,6 @@
 #include "frontend/motion/camera_odometry.hpp"
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -152,6 +153,22 @@ TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
 }
 
 /// Otherwise standing still would count as steady, and traffic that keeps its pace would pass for what rests.
+TEST(CameraOdometry, StepsOfACameraThatMayHaveStoppedAreUncertainByTheWayThatItMayHaveGone) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  see(odometry, frameAt(1, 100), Views(200, kOdometryStep, 4));
+  SE3 T_seen_now;
+  double variance_m2 = 0;
+  for (int frame = 2; frame <= 31; ++frame) {
+    const Odometry step = odometry.passOver({frame * 100'000'000LL});
+    T_seen_now = T_seen_now * step.T_previous_now;
+    variance_m2 += step.covariance.topLeftCorner<3, 3>().trace();
+  }
+  const double missing_m = 30 - T_seen_now.translation().norm();  // of one that drove on at 10 m/s
+  EXPECT_GT(missing_m, 19);
+  EXPECT_NEAR(std::sqrt(variance_m2), missing_m, 2) << "more by what is unknown of each step";
+}
+
 TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
