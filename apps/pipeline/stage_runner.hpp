@@ -7,6 +7,7 @@
 #include "apps/pipeline/stages.hpp"
 #include "core/messages.hpp"
 #include "core/se3.hpp"
+#include "frontend/messages.hpp"
 
 namespace motorcade {
 
