@@ -5,8 +5,7 @@
 #include <new>
 #include <utility>
 
-#include "core/idle_slots.hpp"
-#include "core/pages.hpp"
+#include "core/object_pool.hpp"
 
 namespace motorcade {
 namespace {

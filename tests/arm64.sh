@@ -33,7 +33,7 @@ cmake --preset release -B $build -DCMAKE_TOOLCHAIN_FILE=$PWD/$build.toolchain.cm
   -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/aarch64-linux-gnu -DMOTORCADE_BUILD_APPS=OFF -DMOTORCADE_BUILD_TESTS=OFF \
   --log-level=WARNING
 cmake --build $build --target libmotorcade
-aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off tests/interface/print_results.cpp -Iinclude -L$build/apps/interface -lmotorcade \
+aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off tests/support/print_results.cpp -Iinclude -L$build/apps/interface -lmotorcade \
   -Wl,-rpath-link,"$root/usr/lib/aarch64-linux-gnu" -o $build/print_results
 
 cmake --preset release --log-level=WARNING

@@ -2,26 +2,22 @@
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
-#include "apps/batch/attempts.hpp"
-#include "apps/batch/local_lock.hpp"
+#include "apps/batch/batch_processes.hpp"
 #include "apps/batch/local_runner.hpp"
-#include "apps/batch/slots.hpp"
 #include "apps/batch/slurm_submission.hpp"
-#include "apps/batch/task_time.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/own_program.hpp"
 #include "apps/console/stop_signals.hpp"
-#include "apps/merge/merge_command.hpp"
+#include "apps/merge/merged_files.hpp"
 #include "apps/tasks/manifest.hpp"
-#include "apps/tasks/planner.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/files/errors.hpp"
-#include "io/files/shell_words.hpp"
+#include "io/files/file_descriptor.hpp"
+#include "io/files/file_names.hpp"
 
 namespace motorcade {
 namespace {
@@ -184,9 +180,7 @@ int runBatch(const BatchOptions& options) {
   const BatchFolder folder(options.out);
   if (options.slurm) requireWritableInScript(folder.path());
   const Plan plan = planFor(options, folder);
-  std::error_code error;
-  fs::create_directories(folder.path(), error);
-  if (error) throw OutputError(folder.path().string() + ": cannot be made: " + error.message());
+  makeFolder(folder.path());
   std::optional<LocalLock> lock;
   if (!options.slurm) lock.emplace(folder);
   writePlan(folder.plan(), plan);

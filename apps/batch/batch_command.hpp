@@ -1,10 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <string>
 
-#include "apps/batch/slurm_script.hpp"
+#include "apps/batch/slurm.hpp"
 #include "apps/tasks/planner.hpp"
 
 namespace motorcade {

@@ -5,17 +5,16 @@
 
 #include <fmt/format.h>
 
-#include "apps/batch/attempts.hpp"
 #include "apps/batch/batch_command.hpp"
-#include "apps/batch/local_lock.hpp"
-#include "apps/batch/slurm_commands.hpp"
+#include "apps/batch/batch_processes.hpp"
+#include "apps/batch/slurm.hpp"
 #include "apps/batch/slurm_submission.hpp"
 #include "apps/batch/time_left.hpp"
 #include "apps/tasks/task_json.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/line_file.hpp"
-#include "io/files/shell_words.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,12 +1,14 @@
 #include "apps/batch/local_runner.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sched.h>
 
-#include "apps/batch/attempts.hpp"
+#include "apps/batch/batch_processes.hpp"
 #include "apps/batch/time_left.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
@@ -14,6 +16,66 @@
 #include "io/files/errors.hpp"
 
 namespace motorcade {
+
+std::vector<int> usableProcessors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> usable;
+  if (::sched_getaffinity(0, sizeof(set), &set) != 0) return usable;
+  for (int processor = 0; processor < CPU_SETSIZE; ++processor)
+    if (CPU_ISSET(static_cast<std::size_t>(processor), &set)) usable.push_back(processor);
+  return usable;
+}
+
+std::vector<std::vector<int>> processorSlots(const std::vector<int>& usable, int jobs, int threads) {
+  std::vector<std::vector<int>> slots(static_cast<std::size_t>(jobs));
+  if (usable.size() < static_cast<std::size_t>(jobs) * static_cast<std::size_t>(threads)) return slots;
+  auto next = usable.begin();
+  for (auto& slot : slots) {
+    slot.assign(next, next + threads);
+    next += threads;
+  }
+  return slots;
+}
+
+TaskQueue::TaskQueue(const std::vector<const Task*>& tasks) {
+  for (const Task* const task : tasks)
+    if (!task->render_arguments.empty() && task->problem.empty() && !std::filesystem::exists(task->sequence) &&
+        unrendered_.insert(task->sequence).second)
+      items_.push_back({task, true});
+  for (const Task* const task : tasks) items_.push_back({task, false});
+}
+
+std::optional<TaskQueue::Item> TaskQueue::next() {
+  std::unique_lock lock(mutex_);
+  std::optional<Item> item;
+  changed_.wait(lock, [&] { return stopped_ || items_.empty() || (item = takeReady()).has_value(); });
+  return item;
+}
+
+void TaskQueue::done(const Item& item) {
+  if (!item.only_render) return;
+  const std::lock_guard lock(mutex_);
+  unrendered_.erase(item.task->sequence);
+  changed_.notify_all();
+}
+
+void TaskQueue::stop() {
+  const std::lock_guard lock(mutex_);
+  stopped_ = true;
+  changed_.notify_all();
+}
+
+std::optional<TaskQueue::Item> TaskQueue::takeReady() {
+  const auto ready = std::ranges::find_if(
+      items_, [&](const Item& item) { return item.only_render || !unrendered_.contains(item.task->sequence); });
+  if (ready == items_.end()) return std::nullopt;
+  const Item item = *ready;
+  items_.erase(ready);
+  if (items_.empty()) changed_.notify_all();
+  return item;
+}
+
 namespace {
 
 using namespace std::chrono_literals;

@@ -2,15 +2,55 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <vector>
 
-#include "apps/batch/task_queue.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/plan.hpp"
 #include "apps/tasks/task_record.hpp"
 
 namespace motorcade {
+
+/// The processors that this process may use, in ascending order.
+std::vector<int> usableProcessors();
+
+/// The processors of each of `jobs` tasks that run side by side, so that their times are comparable. With fewer
+/// processors than `jobs` times `threads`, tasks may use any: the lists are empty.
+std::vector<std::vector<int>> processorSlots(const std::vector<int>& usable, int jobs, int threads);
+
+/// The remaining work, shared by several workers: the tasks in their order, and each scene's rendering, once, before
+/// its tasks. A task whose sequence is being rendered is passed over until that is done. Thread safe.
+class TaskQueue {
+ public:
+  struct Item {
+    const Task* task = nullptr;
+    bool only_render = false;
+  };
+
+  /// The tasks live longer than the queue.
+  explicit TaskQueue(const std::vector<const Task*>& tasks);
+
+  /// Waits until something can be done; empty when nothing is left or the queue was stopped.
+  std::optional<Item> next();
+  /// A worker that took an item calls this when it is done, well or not.
+  void done(const Item& item);
+  /// Gives out no further items.
+  void stop();
+
+ private:
+  std::optional<Item> takeReady();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Item> items_;
+  std::set<std::filesystem::path> unrendered_;
+  bool stopped_ = false;
+};
 
 /// Outcome of the tasks that were to be performed.
 struct LocalOutcome {

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/batch/slurm_commands.hpp"
-#include "apps/batch/slurm_script.hpp"
+#include "apps/batch/slurm.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/plan.hpp"
 

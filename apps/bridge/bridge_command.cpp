@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
 
-#include "apps/bridge/bridge_options.hpp"
 #include "apps/bridge/bridge_parts.hpp"
 #include "apps/bridge/dds/dds_publisher.hpp"
 #include "apps/bridge/drive_player.hpp"
-#include "apps/bridge/result_publisher.hpp"
-#include "apps/bridge/topic_bridge.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"
 #include "apps/console/stop_signals.hpp"

@@ -34,4 +34,8 @@ struct BridgeOptions {
 /// Failures are UserErrors.
 int runBridge(const BridgeOptions& options);
 
+/// Follows the topics of `--images` until a signal comes, or the wanted number of pairs. Returns the exit code;
+/// failures are UserErrors.
+int runTopicBridge(const BridgeOptions& options);
+
 }  // namespace motorcade

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bridge/messages/ros_diagnostics.hpp"
+#include "apps/bridge/messages/diagnostics.hpp"
 #include "io/messages/stamp_pairing.hpp"
 
 namespace motorcade {

@@ -1,11 +1,8 @@
-#include "apps/bridge/topic_bridge.hpp"
-
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <exception>
 #include <fstream>
-#include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -13,13 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "apps/bridge/bridge_options.hpp"
+#include "apps/bridge/bridge_command.hpp"
 #include "apps/bridge/bridge_parts.hpp"
 #include "apps/bridge/dds/dds_publisher.hpp"
 #include "apps/bridge/dds/image_subscriber.hpp"
 #include "apps/bridge/input_watch.hpp"
 #include "apps/bridge/messages/message_conversion.hpp"
-#include "apps/bridge/result_publisher.hpp"
 #include "apps/bridge/topic_feeder.hpp"
 #include "apps/console/log.hpp"
 #include "apps/console/progress.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdio>
-#include <string>
-
 namespace motorcade {
 
 /// RGB color, 0 to 255 each.
@@ -19,13 +15,5 @@ inline Color between(Color from, Color to, double share) {
 
 /// Halfway to white, for points on a surface of that color.
 inline Color lightened(Color color) { return between(color, {255, 255, 255}, 0.5); }
-
-/// Formats like printf, for labels.
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 128> text;
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 }  // namespace motorcade

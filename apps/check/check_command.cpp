@@ -3,28 +3,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "apps/check/camera_doubts.hpp"
 #include "apps/check/check_page.hpp"
 #include "apps/check/finding_guide.hpp"
-#include "apps/check/mosaic_doubt.hpp"
-#include "apps/check/row_error_names.hpp"
-#include "apps/check/sequence_line.hpp"
+#include "apps/check/sequence_remarks.hpp"
 #include "apps/inject/fault_injector.hpp"
 #include "apps/watch/input_check.hpp"
-#include "apps/watch/own_vehicle_news.hpp"
 #include "apps/watch/own_vehicle_search.hpp"
+#include "apps/watch/vehicle_news.hpp"
 #include "io/files/json_text.hpp"
 #include "io/files/line_file.hpp"
 #include "io/inputs/sequence_decoder.hpp"
 #include "io/layouts/open_sequence.hpp"
-#include "io/sequence/sequence.hpp"
 
 namespace motorcade {
 namespace {

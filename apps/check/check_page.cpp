@@ -1,15 +1,14 @@
 #include "apps/check/check_page.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "apps/canvas/color.hpp"
 #include "apps/check/finding_guide.hpp"
-#include "apps/check/row_error_names.hpp"
 #include "apps/html/html_page.hpp"
-#include "apps/watch/median.hpp"
 
 namespace motorcade {
 namespace {
@@ -17,9 +16,9 @@ namespace {
 constexpr int kJpegQuality = 86;
 
 /// Rounded for reading; a dash where there is no number.
-std::string number(double value, const char* pattern = "%.2f") {
+std::string number(double value, const char* pattern = "{:.2f}") {
   if (!std::isfinite(value)) return "–";
-  const std::string text = format(pattern, value);
+  const std::string text = fmt::format(fmt::runtime(pattern), value);
   return text.starts_with("-") && text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
 }
 
@@ -59,7 +58,7 @@ std::string headOf(const CheckedInput& input) {
           card(std::to_string(matches.size()), "points seen in both images") +
           card(number(geometry.rms_px) + " px", "difference of their rows, root mean square") +
           card(number(geometry.remaining_px) + " px", "left of it once the errors below are taken out") +
-          card(number(100 * share, "%.0f %%"), "of the points lie ahead of the camera") + "</div>\n";
+          card(number(100 * share, "{:.0f} %"), "of the points lie ahead of the camera") + "</div>\n";
   return html;
 }
 
@@ -131,14 +130,14 @@ std::string geometryOf(const CheckedInput& input) {
     const RowErrorName& name = kRowErrorNames[k];
     const RowErrorEstimate& error = geometry.errors[k];
     html += std::string("<tr><th scope=\"row\">") + name.title + "<div class=\"muted small\">" + name.meaning +
-            "</div></th><td class=\"number\">" + number(name.unit * error.value, "%.3f") +
-            "</td><td class=\"number\">" + number(name.unit * error.sigma, "%.3f") + "</td><td class=\"number\">" +
+            "</div></th><td class=\"number\">" + number(name.unit * error.value, "{:.3f}") +
+            "</td><td class=\"number\">" + number(name.unit * error.sigma, "{:.3f}") + "</td><td class=\"number\">" +
             number(error.effect_px) + "</td><td>" + verdict(input, name) + "</td></tr>\n";
   }
   html +=
       "</tbody></table></div>\n<p class=\"muted small\">Effect: on the rows, root mean square over the image; of the "
       "distortion, the displacement in a corner. " +
-      number(100 * geometry.agreeing_share, "%.0f") + " % of the points follow these errors to " +
+      number(100 * geometry.agreeing_share, "{:.0f}") + " % of the points follow these errors to " +
       number(geometry.remaining_px) + " px. What the points do not show stays at zero with a large sigma.</p>\n";
   return html;
 }
@@ -148,17 +147,18 @@ std::string restOf(const CheckedInput& input) {
   const TimeMeasures times = input.check->times();
   const StereoCamera& camera = input.camera;
   std::string html = "<h2>Light, sharpness, times</h2>\n<div class=\"wide\"><table>\n<tbody>\n";
-  html += row("mean gray level, left and right", {number(light.left_level, "%.0f"), number(light.right_level, "%.0f")});
+  html +=
+      row("mean gray level, left and right", {number(light.left_level, "{:.0f}"), number(light.right_level, "{:.0f}")});
   html += row("grain, left and right [gray levels]", {number(light.left_grain), number(light.right_grain)});
   html += row("largest ratio of brightness, pair to pair and left to right",
-              {number(light.jump, "%.2f×"), number(light.sides, "%.2f×")});
-  html +=
-      row("seconds between pairs, usual and longest", {number(times.usual_s, "%.4g"), number(times.most_s, "%.4g")});
+              {number(light.jump, "{:.2f}×"), number(light.sides, "{:.2f}×")});
+  html += row("seconds between pairs, usual and longest",
+              {number(times.usual_s, "{:.4g}"), number(times.most_s, "{:.4g}")});
   html += "</tbody></table></div>\n<h2>Calibration as read</h2>\n<div class=\"wide\"><table>\n<tbody>\n";
   html += row("image size [px]", {std::to_string(camera.width_px), std::to_string(camera.height_px)});
-  html += row("focal length fx, fy [px]", {number(camera.fx_px, "%.6g"), number(camera.fy_px, "%.6g")});
-  html += row("principal point cx, cy [px]", {number(camera.cx_px, "%.6g"), number(camera.cy_px, "%.6g")});
-  html += row("baseline [m]", {number(camera.baseline_m, "%.5g"), ""});
+  html += row("focal length fx, fy [px]", {number(camera.fx_px, "{:.6g}"), number(camera.fy_px, "{:.6g}")});
+  html += row("principal point cx, cy [px]", {number(camera.cx_px, "{:.6g}"), number(camera.cy_px, "{:.6g}")});
+  html += row("baseline [m]", {number(camera.baseline_m, "{:.5g}"), ""});
   return html + "</tbody></table></div>\n";
 }
 

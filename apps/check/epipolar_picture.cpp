@@ -1,16 +1,16 @@
-#include "apps/check/epipolar_picture.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "apps/canvas/canvas.hpp"
-#include "apps/watch/median.hpp"
+#include "apps/check/check_page.hpp"
+#include "apps/watch/pair_geometry.hpp"
 
 namespace motorcade {
 namespace {
@@ -65,8 +65,8 @@ void drawColors(Canvas& canvas, double top, const std::string& note) {
     canvas.text({left + 17, base}, text, style);
     left += 17 + Canvas::textWidth(text, style) + 24;
   };
-  put(kGood, format("row error up to %.1f px", kGood_px));
-  put(kFair, format("up to %.1f px", kFair_px));
+  put(kGood, fmt::format("row error up to {:.1f} px", kGood_px));
+  put(kFair, fmt::format("up to {:.1f} px", kFair_px));
   put(kBad, "more");
   canvas.text({canvas.width() - 12 - Canvas::textWidth(note, style), base}, note, style);
 }
@@ -110,7 +110,7 @@ void drawScale(Canvas& canvas, double top, double shown_per_px) {
   double unit_px = 0.1;
   for (const double larger_px : {0.2, 0.5, 1., 2., 5., 10., 20.})
     if (larger_px * shown_per_px <= kLong_px) unit_px = larger_px;
-  const std::string text = format("%g px of row error", unit_px);
+  const std::string text = fmt::format("{:g} px of row error", unit_px);
   drawColors(canvas, top, text);
   const double right = canvas.width() - 24 - Canvas::textWidth(text, {.size_px = 13});
   canvas.line({right - shown_per_px * unit_px, top + 15}, {right, top + 15}, {.color = kInk, .width_px = 3});
@@ -126,7 +126,7 @@ RgbImage drawEpipolarLines(const MatchedPair& pair) {
   canvas.paste(pair.left, {0, kHeader_px, kSide_px, height});
   canvas.paste(pair.right, {second, kHeader_px, kSide_px, height});
   const TextStyle head{.color = kInk, .size_px = 14, .bold = true};
-  canvas.text({12, 19}, format("left, frame %lld", static_cast<long long>(pair.frame.value)), head);
+  canvas.text({12, 19}, fmt::format("left, frame {}", pair.frame.value), head);
   canvas.text({second + 12, 19}, "right", head);
   std::vector<double> errors_px;
   for (const EpipolarMatch& match : pair.matches) errors_px.push_back(match.rowDifference_px());
@@ -137,7 +137,7 @@ RgbImage drawEpipolarLines(const MatchedPair& pair) {
                    to = Vector2d(second + scale * match.u_right_px, from.y());
     drawMatch(images, from, to, factor * scale * match.rowDifference_px(), colorOf(match.rowDifference_px()));
   }
-  drawColors(canvas, kHeader_px + height, format("bars: the row error, %.0f times as large", factor));
+  drawColors(canvas, kHeader_px + height, fmt::format("bars: the row error, {:.0f} times as large", factor));
   return canvas.image();
 }
 

@@ -1,7 +1,6 @@
 #include "apps/check/finding_guide.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace motorcade {

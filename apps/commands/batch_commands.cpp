@@ -1,11 +1,8 @@
 #include <memory>
-#include <string>
-
-#include <CLI/CLI.hpp>
 
 #include "apps/batch/batch_command.hpp"
-#include "apps/commands/commands.hpp"
-#include "apps/merge/merge_command.hpp"
+#include "apps/commands/command_options.hpp"
+#include "apps/merge/merged_files.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {
@@ -29,47 +26,42 @@ void addSlurm(CLI::App& command, const std::shared_ptr<BatchOptions>& options) {
 }
 
 void addSelection(CLI::App& command, Selection& only) {
-  command.add_option("--drives", only.drives, "Only these drives and scenes of the manifest")
-      ->delimiter(',')
-      ->type_name("NAME[,NAME]");
-  command.add_option("--sets", only.sets, "Only these sets of parameters")->delimiter(',')->type_name("NAME[,NAME]");
+  typed(command, "NAME[,NAME]", "--drives", only.drives, "Only these drives and scenes of the manifest")
+      ->delimiter(',');
+  typed(command, "NAME[,NAME]", "--sets", only.sets, "Only these sets of parameters")->delimiter(',');
   command.add_option("--seeds", only.seeds, "Seeds of all scenes, in place of the manifest's, as 1-5");
 }
 
 void addTask(CLI::App& batch, Action& action) {
-  const auto options = std::make_shared<BatchTaskOptions>();
-  CLI::App* command = batch.add_subcommand("task", "Perform one task of a planned batch, as Slurm's scripts do");
-  command->add_option("DIR", options->batch, "Folder of the batch")->required();
-  command->add_option("--list", options->list, "File with names of tasks, one per line")->required();
-  command->add_option("--index", options->index, "Which line, counted from 0")->required();
-  command->add_flag("--render", options->only_render, "Render the task's scene, no more");
-  command->callback([options, &action] { action = [options] { return runBatchTask(*options); }; });
+  const auto [command, options] =
+      addCommand(batch, action, "task", "Perform one task of a planned batch, as Slurm's scripts do", runBatchTask);
+  command.add_option("DIR", options.batch, "Folder of the batch")->required();
+  command.add_option("--list", options.list, "File with names of tasks, one per line")->required();
+  command.add_option("--index", options.index, "Which line, counted from 0")->required();
+  command.add_flag("--render", options.only_render, "Render the task's scene, no more");
 }
 
 void addStatus(CLI::App& batch, Action& action) {
-  const auto options = std::make_shared<BatchStatusOptions>();
-  CLI::App* command = batch.add_subcommand("status", "Tell how far a batch is, here or in Slurm");
-  command->add_option("DIR", options->batch, "Folder of the batch")->required();
-  command->add_option("--json", options->json, "File for the state of each task as JSON");
-  command->callback([options, &action] { action = [options] { return runBatchStatus(*options); }; });
+  const auto [command, options] =
+      addCommand(batch, action, "status", "Tell how far a batch is, here or in Slurm", runBatchStatus);
+  command.add_option("DIR", options.batch, "Folder of the batch")->required();
+  command.add_option("--json", options.json, "File for the state of each task as JSON");
 }
 
 void addCancel(CLI::App& batch, Action& action) {
-  const auto folder = std::make_shared<std::filesystem::path>();
-  CLI::App* command = batch.add_subcommand("cancel", "End what runs of a batch; finished results stay");
-  command->add_option("DIR", *folder, "Folder of the batch")->required();
-  command->callback([folder, &action] { action = [folder] { return runBatchCancel(*folder); }; });
+  const auto [command, folder] =
+      addCommand(batch, action, "cancel", "End what runs of a batch; finished results stay", runBatchCancel);
+  command.add_option("DIR", folder, "Folder of the batch")->required();
 }
 
 void addMerge(CLI::App& batch, Action& action) {
-  const auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = batch.add_subcommand("merge", "Write one table and one page of all results");
-  command->add_option("DIR", options->batch, "Folder of the batch")->required();
-  command->add_option("--out", options->out, "Folder for them; DIR/merged when absent");
-  command->add_option("--against", options->against, "Folder of another batch of the same drives, to compare with");
-  command->add_option("--baseline-set", options->baseline_set,
-                      "Set of parameters that relative errors are taken against; the manifest's when absent");
-  command->callback([options, &action] { action = [options] { return runMerge(*options); }; });
+  const auto [command, options] =
+      addCommand(batch, action, "merge", "Write one table and one page of all results", runMerge);
+  command.add_option("DIR", options.batch, "Folder of the batch")->required();
+  command.add_option("--out", options.out, "Folder for them; DIR/merged when absent");
+  command.add_option("--against", options.against, "Folder of another batch of the same drives, to compare with");
+  command.add_option("--baseline-set", options.baseline_set,
+                     "Set of parameters that relative errors are taken against; the manifest's when absent");
 }
 
 }  // namespace

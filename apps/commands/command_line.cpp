@@ -5,14 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "apps/commands/commands.hpp"
 #include "apps/console/log.hpp"
-#include "apps/console/versions.hpp"
+#include "apps/console/own_program.hpp"
 #include "core/edit_distance.hpp"
 
 namespace motorcade {

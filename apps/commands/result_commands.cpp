@@ -4,14 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "apps/commands/commands.hpp"
+#include "apps/commands/command_options.hpp"
 #include "apps/draw/draw_command.hpp"
-#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/evaluate/report/report.hpp"
 #include "apps/export/export_command.hpp"
-#include "apps/latency/latency_command.hpp"
+#include "apps/latency/latency_report.hpp"
 #include "apps/report/report_command.hpp"
+#include "apps/view/recorded_view.hpp"
 
 namespace motorcade {
 namespace {
@@ -20,12 +19,12 @@ constexpr std::array kTruths{std::pair("position", OxtsTimes::kInterpolated),
                              std::pair("uninterpolated", OxtsTimes::kUninterpolated),
                              std::pair("velocity", OxtsTimes::kVelocities)};
 
-void addTruth(CLI::App& command, const std::shared_ptr<EvaluateOptions>& options) {
+void addTruth(CLI::App& command, EvaluateOptions& options) {
   std::vector<std::string> names;
   for (const auto& [name, truth] : kTruths) names.emplace_back(name);
-  const auto choose = [options](const std::string& chosen) {
+  const auto choose = [&options](const std::string& chosen) {
     for (const auto& [name, truth] : kTruths)
-      if (chosen == name) options->truth = truth;
+      if (chosen == name) options.truth = truth;
   };
   CLI::Option* truth = command
                            .add_option_function<std::string>(
@@ -36,7 +35,7 @@ void addTruth(CLI::App& command, const std::shared_ptr<EvaluateOptions>& options
                            ->check(CLI::IsMember(names));
   command
       .add_flag_callback(
-          "--uninterpolated", [options] { options->truth = OxtsTimes::kUninterpolated; },
+          "--uninterpolated", [&options] { options.truth = OxtsTimes::kUninterpolated; },
           "The same as --truth uninterpolated")
       ->excludes(truth);
 }
@@ -44,28 +43,24 @@ void addTruth(CLI::App& command, const std::shared_ptr<EvaluateOptions>& options
 }  // namespace
 
 void addEvaluate(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "Measure a run against the ground truth of its sequence");
-  command->add_option("run", options->run, "Run folder")->required();
-  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
-  command
-      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
-      ->check(CLI::Range(0.001, 100'000.0));
-  command->add_option("--baseline", options->baseline,
-                      "Another camera trajectory, as KITTI pose lines or in TUM form, for the relative error");
-  command->add_option("--baseline-run", options->baseline_run,
-                      "Run folder of another method, for the relative error of the objects");
-  command->add_option("--half-run", options->half_run,
-                      "Run folder of the same drive from the other half of the points: do the two differ as their "
-                      "covariances say");
-  command->add_option("--export-truth", options->export_truth,
-                      "Folder for the true trajectories of camera and objects");
-  command->add_option("--export-kitti", options->export_kitti,
-                      "Folder for the run's objects as KITTI tracking results; needs no ground truth");
-  command->add_option("--json", options->json, "File for all measures as JSON");
-  addTruth(*command, options);
-  command->footer("Example: motorcade evaluate RUN --json MEASURES.json");
-  command->callback([options, &action] { action = [options] { return runEvaluate(*options); }; });
+  const auto [command, options] =
+      addCommand(app, action, "evaluate", "Measure a run against the ground truth of its sequence", runEvaluate);
+  command.add_option("run", options.run, "Run folder")->required();
+  command.add_option("--sequence", options.sequence, "The sequence that was run, where it is no longer where it was");
+  addFps(command, options.fps_hz);
+  command.add_option("--baseline", options.baseline,
+                     "Another camera trajectory, as KITTI pose lines or in TUM form, for the relative error");
+  command.add_option("--baseline-run", options.baseline_run,
+                     "Run folder of another method, for the relative error of the objects");
+  command.add_option("--half-run", options.half_run,
+                     "Run folder of the same drive from the other half of the points: do the two differ as their "
+                     "covariances say");
+  command.add_option("--export-truth", options.export_truth, "Folder for the true trajectories of camera and objects");
+  command.add_option("--export-kitti", options.export_kitti,
+                     "Folder for the run's objects as KITTI tracking results; needs no ground truth");
+  command.add_option("--json", options.json, "File for all measures as JSON");
+  addTruth(command, options);
+  command.footer("Example: motorcade evaluate RUN --json MEASURES.json");
 }
 
 void addDraw(CLI::App& app, Action& action) {
@@ -75,17 +70,13 @@ void addDraw(CLI::App& app, Action& action) {
   command->add_option("run", options->run, "Run folder")->required();
   command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
   command->add_option("--out", options->out, "Folder for the pictures");
-  command
-      ->add_option("--video", options->video,
-                   "File for a video, .mp4 or .webm, made by ffmpeg; pictures where that is not installed")
-      ->type_name("FILE");
+  typed(*command, "FILE", "--video", options->video,
+        "File for a video, .mp4 or .webm, made by ffmpeg; pictures where that is not installed");
   command->add_option("--frames", *frames, "Frames A:B of the sequence");
   command->add_option("--every", options->every, "Draw every Nth frame")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command
-      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
-      ->check(CLI::Range(0.001, 100'000.0));
+  addFps(*command, options->fps_hz);
   command->footer("Example: motorcade draw RUN --video DRIVE.mp4");
   command->callback([options, frames, &action] {
     action = [options, frames] {
@@ -96,53 +87,53 @@ void addDraw(CLI::App& app, Action& action) {
 }
 
 void addReport(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = app.add_subcommand("report", "Write a page that tells of a run, in one file");
-  command->add_option("run", options->run, "Run folder")->required();
-  command->add_option("--out", options->out, "File to write; report.html in the run folder when absent");
-  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
-  command
-      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
-      ->check(CLI::Range(0.001, 100'000.0));
-  command->add_option("--baseline", options->baseline,
-                      "Another camera trajectory, as KITTI pose lines or in TUM form, to compare with");
-  command->footer("Example: motorcade report RUN");
-  command->callback([options, &action] { action = [options] { return runReport(*options); }; });
+  const auto [command, options] =
+      addCommand(app, action, "report", "Write a page that tells of a run, in one file", runReport);
+  command.add_option("run", options.run, "Run folder")->required();
+  command.add_option("--out", options.out, "File to write; report.html in the run folder when absent");
+  command.add_option("--sequence", options.sequence, "The sequence that was run, where it is no longer where it was");
+  addFps(command, options.fps_hz);
+  command.add_option("--baseline", options.baseline,
+                     "Another camera trajectory, as KITTI pose lines or in TUM form, to compare with");
+  command.footer("Example: motorcade report RUN");
 }
 
 void addLatency(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<LatencyOptions>();
-  CLI::App* command = app.add_subcommand("latency", "Tell where the time of a run's frames went");
-  command->add_option("run", options->run, "Run folder")->required();
-  command->add_option("--json", options->json, "File for the same as JSON");
-  command->footer("Example: motorcade latency RUN");
-  command->callback([options, &action] { action = [options] { return runLatency(*options); }; });
+  const auto [command, options] =
+      addCommand(app, action, "latency", "Tell where the time of a run's frames went", runLatency);
+  command.add_option("run", options.run, "Run folder")->required();
+  command.add_option("--json", options.json, "File for the same as JSON");
+  command.footer("Example: motorcade latency RUN");
 }
 
 void addExport(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write a run for other programs: Foxglove, Rerun, ASAM OSI, evo");
-  command->add_option("run", options->run, "Run folder")->required();
-  command->add_option("--sequence", options->sequence, "The sequence that was run, where it is no longer where it was");
-  command->add_option("--mcap", options->mcap, "MCAP file of images, poses, cuboids and points, for Foxglove and Rerun")
-      ->type_name("FILE");
-  command
-      ->add_option("--osi", options->osi,
-                   "MCAP file of ASAM OSI: an osi3.SensorData per frame, as the rules for trace files want it")
-      ->type_name("FILE");
-  command
-      ->add_option("--mounting", options->mounting,
-                   "For --osi: where the left camera sits in the vehicle's frame (x ahead, y left, z up) [m], and its "
-                   "turn about these axes, roll first [deg]")
-      ->type_name("X,Y,Z,ROLL,PITCH,YAW");
-  command->add_option("--tum", options->tum, "Folder for trajectories: camera.tum, object_NNN.tum")->type_name("DIR");
-  command->add_flag("--predicted", options->with_predicted,
-                    "Also poses in the trajectories that were predicted, not measured");
-  command
-      ->add_option("--fps", options->fps_hz, "Capture rate where the sequence has no times [Hz]; the run's when absent")
-      ->check(CLI::Range(0.001, 100'000.0));
-  command->footer("Example: motorcade export RUN --mcap RUN.mcap --tum TRAJECTORIES");
-  command->callback([options, &action] { action = [options] { return runExport(*options); }; });
+  const auto [command, options] =
+      addCommand(app, action, "export", "Write a run for other programs: Foxglove, Rerun, ASAM OSI, evo", runExport);
+  command.add_option("run", options.run, "Run folder")->required();
+  command.add_option("--sequence", options.sequence, "The sequence that was run, where it is no longer where it was");
+  typed(command, "FILE", "--mcap", options.mcap,
+        "MCAP file of images, poses, cuboids and points, for Foxglove and Rerun");
+  typed(command, "FILE", "--osi", options.osi,
+        "MCAP file of ASAM OSI: an osi3.SensorData per frame, as the rules for trace files want it");
+  typed(command, "X,Y,Z,ROLL,PITCH,YAW", "--mounting", options.mounting,
+        "For --osi: where the left camera sits in the vehicle's frame (x ahead, y left, z up) [m], and its "
+        "turn about these axes, roll first [deg]");
+  typed(command, "DIR", "--tum", options.tum, "Folder for trajectories: camera.tum, object_NNN.tum");
+  command.add_flag("--predicted", options.with_predicted,
+                   "Also poses in the trajectories that were predicted, not measured");
+  addFps(command, options.fps_hz);
+  command.footer("Example: motorcade export RUN --mcap RUN.mcap --tum TRAJECTORIES");
+}
+
+void addView(CLI::App& app, Action& action) {
+  const auto [command, options] =
+      addCommand(app, action, "view", "Serve a page that shows a run: image, scene, objects and times", runView);
+  command.add_option("run", options.run, "Run folder")->required();
+  typed(command, "RUN", "--against", options.against, "Another run of the same drive, shown beside it frame by frame");
+  command.add_option("--sequence", options.sequence, "The sequence that was run, where it is no longer where it was");
+  addFps(command, options.fps_hz);
+  typed(command, "ADDR:PORT", "--view", options.address, "Where the page is served; 127.0.0.1:8080 when absent");
+  command.footer("Example: motorcade view RUN");
 }
 
 }  // namespace motorcade

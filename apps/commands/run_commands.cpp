@@ -1,9 +1,7 @@
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include "apps/check/check_command.hpp"
-#include "apps/commands/commands.hpp"
+#include "apps/commands/command_options.hpp"
 #include "apps/inject/fault_spec.hpp"
 #include "apps/run/run_command.hpp"
 #include "io/bag/bag_reader.hpp"
@@ -21,23 +19,17 @@ constexpr const char* kRunInputHelp =
     "the standard input (YUV4MPEG2, which ffmpeg and GStreamer write)";
 
 void addGivenCameras(CLI::App& command, GivenCameras& given) {
-  CLI::Option* const camera = command
-                                  .add_option("--camera", given.camera,
-                                              "The cameras of a rectified pair, in pixels and, the last, meters; "
-                                              "comes before the sequence's own calibration")
-                                  ->type_name("FX,FY,CX,CY,BASELINE");
-  command
-      .add_option("--calibration", given.calibration,
-                  "Calibration of the pair, which is rectified on the way: Kalibr's camchain, OpenCV's intrinsics and "
-                  "extrinsics, ROS' camera_info of both, EuRoC's sensor.yaml of both, and others; KITTI's (*.txt) of a "
-                  "rectified pair; or the folder that it lies in")
-      ->type_name("FILE[,FILE]")
+  CLI::Option* const camera = typed(command, "FX,FY,CX,CY,BASELINE", "--camera", given.camera,
+                                    "The cameras of a rectified pair, in pixels and, the last, meters; "
+                                    "comes before the sequence's own calibration");
+  typed(command, "FILE[,FILE]", "--calibration", given.calibration,
+        "Calibration of the pair, which is rectified on the way: Kalibr's camchain, OpenCV's intrinsics and "
+        "extrinsics, ROS' camera_info of both, EuRoC's sensor.yaml of both, and others; KITTI's (*.txt) of a "
+        "rectified pair; or the folder that it lies in")
       ->excludes(camera);
-  command
-      .add_option("--bayer", given.bayer,
-                  "The images are the mosaic of a color sensor, as raw images are: the filters of the first two pixels "
-                  "of the first two rows")
-      ->type_name("RGGB|BGGR|GRBG|GBRG");
+  typed(command, "RGGB|BGGR|GRBG|GBRG", "--bayer", given.bayer,
+        "The images are the mosaic of a color sensor, as raw images are: the filters of the first two pixels "
+        "of the first two rows");
 }
 
 void addPacking(CLI::App& command, RunOptions& options) {
@@ -48,13 +40,11 @@ void addPacking(CLI::App& command, RunOptions& options) {
 }
 
 void addTopics(CLI::App& command, RunOptions& options) {
-  command
-      .add_option("--topics", options.topics,
-                  "Topics of a bag's images, of sensor_msgs' (or foxglove's) images, compressed or not; without it, "
-                  "run lists those that "
-                  "there are. The calibration is that of the camera_info beside them, unless --camera or --calibration "
-                  "is given")
-      ->type_name("LEFT,RIGHT");
+  typed(command, "LEFT,RIGHT", "--topics", options.topics,
+        "Topics of a bag's images, of sensor_msgs' (or foxglove's) images, compressed or not; without it, "
+        "run lists those that "
+        "there are. The calibration is that of the camera_info beside them, unless --camera or --calibration "
+        "is given");
 }
 
 void addPace(CLI::App& command, RunOptions& options) {
@@ -83,44 +73,30 @@ void addInputAndFolder(CLI::App& command, RunOptions& options) {
 void addWaysToSee(CLI::App& command, RunOptions& options) {
   command.add_flag("--masks", options.masks,
                    "Write what the image shows of the objects: masks/NNNNNN.png, outlines.jsonl, object_points.csv");
-  command
-      .add_option(
-          "--mcap", options.mcap,
-          "Write images, poses, cuboids and points to an MCAP file for Foxglove and Rerun, while the run goes on")
-      ->type_name("FILE");
-  command
-      .add_option("--view", options.view,
-                  "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
-      ->type_name("[ADDR:PORT]")
+  typed(command, "FILE", "--mcap", options.mcap,
+        "Write images, poses, cuboids and points to an MCAP file for Foxglove and Rerun, while the run goes on");
+  typed(command, "[ADDR:PORT]", "--view", options.view,
+        "Serve a page that follows the run, under http://127.0.0.1:8080/ unless told otherwise")
       ->expected(0, 1)
       ->default_str("");
 }
 
 /// Adds the options for knowledge that comes beside the images.
 void addWhatComesBeside(CLI::App& command, RunOptions& options) {
-  command
-      .add_option(
-          "--camera-poses", options.camera_poses,
-          "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
-          "filter_map or pose_graph")
-      ->type_name("POSES.txt");
-  command
-      .add_option("--vehicle-motion", options.vehicle_motion,
-                  "The vehicle's own motion, which predicts where images fail: time_s,speed_mps,yaw_rate_radps as CSV "
-                  "on the images' clock, or KITTI's oxts.txt; without it, motion.csv in the sequence's folder; 'none' "
-                  "leaves that out")
-      ->type_name("FILE|none");
-  command
-      .add_option("--instances", options.instances,
-                  "Instance labels of the left image, rectified, as a network tells them, one PNG for a frame or for "
-                  "some: NNNNNN.png, one number for the pixels of a body, 0 for none. They need not be right")
-      ->type_name("FOLDER");
-  command
-      .add_option("--ignore", options.ignored,
-                  "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
-                  "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
-                  "fixed to the camera, as a bonnet, is found without it")
-      ->type_name("SIDE=PIXELS|MASK.png");
+  typed(command, "POSES.txt", "--camera-poses", options.camera_poses,
+        "KITTI pose lines of another camera trajectory, one per frame of the sequence, for backend.kind filter, "
+        "filter_map or pose_graph");
+  typed(command, "FILE|none", "--vehicle-motion", options.vehicle_motion,
+        "The vehicle's own motion, which predicts where images fail: time_s,speed_mps,yaw_rate_radps as CSV "
+        "on the images' clock, or KITTI's oxts.txt; without it, motion.csv in the sequence's folder; 'none' "
+        "leaves that out");
+  typed(command, "FOLDER", "--instances", options.instances,
+        "Instance labels of the left image, rectified, as a network tells them, one PNG for a frame or for "
+        "some: NNNNNN.png, one number for the pixels of a body, 0 for none. They need not be right");
+  typed(command, "SIDE=PIXELS|MASK.png", "--ignore", options.ignored,
+        "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
+        "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
+        "fixed to the camera, as a bonnet, is found without it");
 }
 
 }  // namespace
@@ -132,25 +108,18 @@ void addRun(CLI::App& app, Action& action) {
   addPace(*command, *options);
   addWaysToSee(*command, *options);
   command->add_option("--threads", options->threads, "Workers of the pipeline; decoding ahead is extra");
-  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
+  typed(*command, "A:B", "--frames", options->frames, "Only the frames from A up to, not including, B");
   addWhatComesBeside(*command, *options);
-  command->add_option("--config", options->config, "Parameters; see effective_config.toml of any run")
-      ->type_name("FILE.toml");
-  command->add_option("--set", options->assignments, "One parameter, as key=value; may come several times")
-      ->type_name("KEY=VALUE");
-  command
-      ->add_option("--min-existence", options->min_existence,
-                   "Leave out rows of objects that are less likely there, from 0, which reports all, to 0.9; short for "
-                   "--set frontend.shapes.min_existence=P")
-      ->type_name("P");
-  command
-      ->add_option("--inject", options->inject,
-                   "Faults on the way from the camera, to see what becomes of the results: "
-                   "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
-                       faultHelp())
-      ->type_name("FAULTS");
-  command->add_option("--require", options->require, "Exit with 5 when fewer frames are tracked")
-      ->type_name("tracked=FRACTION");
+  typed(*command, "FILE.toml", "--config", options->config, "Parameters; see effective_config.toml of any run");
+  typed(*command, "KEY=VALUE", "--set", options->assignments, "One parameter, as key=value; may come several times");
+  typed(*command, "P", "--min-existence", options->min_existence,
+        "Leave out rows of objects that are less likely there, from 0, which reports all, to 0.9; short for "
+        "--set frontend.shapes.min_existence=P");
+  typed(*command, "FAULTS", "--inject", options->inject,
+        "Faults on the way from the camera, to see what becomes of the results: "
+        "KIND[=VALUE][/left|/right][@A[:B[:STEP]]][~SHARE],... and seed=N, as black@20:23,noise=20~0.1\n" +
+            faultHelp());
+  typed(*command, "tracked=FRACTION", "--require", options->require, "Exit with 5 when fewer frames are tracked");
   command->add_flag("--force", options->force,
                     "Replace a finished run, and go on where the input is found to be worthless");
   command->footer("Example: motorcade run DRIVE --out RUN --masks");
@@ -162,23 +131,19 @@ void addRun(CLI::App& app, Action& action) {
 }
 
 void addCheck(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand("check", "Look for what is wrong with a sequence's first twenty pairs");
-  command->add_option("SEQUENCE", options->sequence, kSequenceHelp)->required();
-  addGivenCameras(*command, options->given);
-  command->add_option("--frames", options->frames, "Only the frames from A up to, not including, B")->type_name("A:B");
-  command->add_option("--fps", options->fps_hz, "Capture rate of a sequence without times [Hz]")
+  const auto [command, options] =
+      addCommand(app, action, "check", "Look for what is wrong with a sequence's first twenty pairs", runCheck);
+  command.add_option("SEQUENCE", options.sequence, kSequenceHelp)->required();
+  addGivenCameras(command, options.given);
+  typed(command, "A:B", "--frames", options.frames, "Only the frames from A up to, not including, B");
+  command.add_option("--fps", options.fps_hz, "Capture rate of a sequence without times [Hz]")
       ->check(CLI::Range(0.001, 100'000.0))
       ->capture_default_str();
-  command->add_option("--json", options->json, "File for what was measured and found as JSON");
-  command
-      ->add_option("--page", options->page,
-                   "File for a page with pictures of the worst pairs and how to mend what is wrong")
-      ->type_name("FILE.html");
-  command->add_option("--inject", options->inject, "Faults, as for run, to see whether they are found")
-      ->type_name("FAULTS");
-  command->footer("Example: motorcade check DRIVE --page CHECK.html");
-  command->callback([options, &action] { action = [options] { return runCheck(*options); }; });
+  command.add_option("--json", options.json, "File for what was measured and found as JSON");
+  typed(command, "FILE.html", "--page", options.page,
+        "File for a page with pictures of the worst pairs and how to mend what is wrong");
+  typed(command, "FAULTS", "--inject", options.inject, "Faults, as for run, to see whether they are found");
+  command.footer("Example: motorcade check DRIVE --page CHECK.html");
 }
 
 }  // namespace motorcade

@@ -2,23 +2,21 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <string>
 #include <thread>
-#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "apps/console/log.hpp"
 #include "apps/console/stop_signals.hpp"
-#include "apps/draw/drawn_images.hpp"
-#include "apps/draw/frame_view.hpp"
 #include "apps/draw/video_writer.hpp"
+#include "apps/draw/views.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/images/image_file.hpp"
 #include "io/inputs/pair_reader.hpp"
 
@@ -26,12 +24,6 @@ namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string pictureName(std::int64_t frame) {
-  char name[40];
-  std::snprintf(name, sizeof(name), "frame_%06lld.png", static_cast<long long>(frame));
-  return name;
-}
 
 /// Pictures per second, when every Nth frame of a drive is taken.
 double rateOf(const RecordedDrive& drive, int every) {
@@ -57,13 +49,11 @@ class Gallery {
       if (!ffmpeg_) insteadOfVideo();
     }
     if (folder_.empty()) return;
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error) throw OutputError(folder_.string() + ": cannot be made a folder: " + error.message());
+    makeFolder(folder_);
   }
 
   void add(const RgbImage& picture, std::int64_t frame) {
-    if (!folder_.empty()) writePngRgb(folder_ / pictureName(frame), picture);
+    if (!folder_.empty()) writePngRgb(folder_ / fmt::format("frame_{:06}.png", frame), picture);
     if (ffmpeg_) {
       const VideoWriter::Format format{{picture.width, picture.height}, rate_hz_};
       if (!video_) video_ = std::make_unique<VideoWriter>(file_, format, *ffmpeg_, stop_);

@@ -1,13 +1,28 @@
-#include "apps/draw/frame_view.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "apps/draw/palette.hpp"
-#include "apps/draw/top_view.hpp"
+#include "apps/draw/views.hpp"
+#include "io/files/errors.hpp"
+#include "io/images/mask_image.hpp"
 
 namespace motorcade {
+
+DrawnImages readDrawnImages(const Sequence& sequence, std::size_t frame, const std::filesystem::path& run_folder,
+                            PairReader& reader) {
+  DrawnImages images{.left = reader.read(sequence.frames[frame], StereoSide::kLeft)};
+  const auto mask = maskFile(run_folder / kMasksFolder, {static_cast<std::int64_t>(frame)});
+  if (!std::filesystem::exists(mask)) return images;
+  images.mask = readPng16(mask);
+  const ImageSize size{images.mask->width, images.mask->height}, wanted{images.left.width(), images.left.height()};
+  if (size != wanted)
+    throw InputError(mask.string() + ": has " + size.text() + " pixels, the image has " + wanted.text());
+  return images;
+}
+
 namespace {
 
 constexpr int kBarHeight_px = 30;
@@ -30,11 +45,11 @@ void drawBar(Canvas& canvas, const RecordedDrive& drive, std::size_t frame) {
     canvas.text({left, kBase_px}, text, style);
     left += Canvas::textWidth(text, style) + kSpace_px;
   };
-  put(format("frame %lld", static_cast<long long>(drive.first_frame) + static_cast<long long>(frame)), bold);
+  put(fmt::format("frame {}", drive.first_frame + static_cast<std::int64_t>(frame)), bold);
   if (frame < drive.stamps.size() && frame < drive.T_world_cam.size()) {
-    put(format("%.2f s", secondsBetween(drive.stamps.front(), drive.stamps[frame])), plain);
+    put(fmt::format("{:.2f} s", secondsBetween(drive.stamps.front(), drive.stamps[frame])), plain);
     if (const double speed_mps = cameraSpeed_mps(drive, frame); std::isfinite(speed_mps))
-      put(format("own car %.1f m/s", speed_mps), plain);
+      put(fmt::format("own car {:.1f} m/s", speed_mps), plain);
   }
   const double name = Canvas::textWidth(drive.name, dim);
   if (left + name < canvas.width() - kEdge_px)

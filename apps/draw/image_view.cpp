@@ -1,21 +1,95 @@
-#include "apps/draw/image_view.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "apps/draw/mask_view.hpp"
+#include <fmt/format.h>
+
 #include "apps/draw/palette.hpp"
 #include "apps/draw/seen_extent.hpp"
 #include "apps/draw/tags.hpp"
+#include "apps/draw/views.hpp"
+#include "io/images/mask_image.hpp"
 #include "io/results/object_row.hpp"
+#include "io/results/outline_polygons.hpp"
 
 namespace motorcade {
 namespace {
+
+/// Bounding box of the pixels of one value.
+struct Bounds {
+  int left, top, right, bottom;
+};
+
+std::map<std::uint16_t, Bounds> boundsByValue(const Gray16Image& mask) {
+  std::map<std::uint16_t, Bounds> all;
+  const std::uint16_t* pixel = mask.pixels.data();
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x, ++pixel) {
+      if (*pixel == 0) continue;
+      Bounds& bounds = all.try_emplace(*pixel, Bounds{x, y, x, y}).first->second;
+      bounds.left = std::min(bounds.left, x);
+      bounds.right = std::max(bounds.right, x);
+      bounds.bottom = y;
+    }
+  }
+  return all;
+}
+
+/// True when each square of pixels is all of the value or none of it. Masks are then made of such cells, or larger
+/// ones.
+bool isMadeOf(int cell_px, const Gray16Image& mask, std::uint16_t value, const Bounds& bounds) {
+  const auto isSet = [&](int x, int y) {
+    return mask.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width) +
+                       static_cast<std::size_t>(x)] == value;
+  };
+  for (int y = bounds.top; y <= bounds.bottom; ++y)
+    for (int x = bounds.left; x <= bounds.right; ++x)
+      if (isSet(x, y) != isSet(x - (x - bounds.left) % cell_px, y - (y - bounds.top) % cell_px)) return false;
+  return true;
+}
+
+ObjectMask cut(const Gray16Image& mask, std::uint16_t value, const Bounds& bounds) {
+  int cell_px = 8;
+  while (cell_px > 1 && !isMadeOf(cell_px, mask, value, bounds)) cell_px /= 2;
+  ObjectMask object{.track = trackOfMask(value),
+                    .left_px = bounds.left,
+                    .top_px = bounds.top,
+                    .cell_px = cell_px,
+                    .width = (bounds.right - bounds.left) / cell_px + 1,
+                    .height = (bounds.bottom - bounds.top) / cell_px + 1,
+                    .inside = {}};
+  for (int row = 0; row < object.height; ++row)
+    for (int column = 0; column < object.width; ++column) {
+      const auto at = static_cast<std::size_t>(bounds.top + row * cell_px) * static_cast<std::size_t>(mask.width) +
+                      static_cast<std::size_t>(bounds.left + column * cell_px);
+      object.inside.push_back(mask.pixels[at] == value ? 1 : 0);
+    }
+  return object;
+}
+
+/// Cuts the corners of a closed outline twice, each side's by a quarter (Chaikin 1974) or, where it is long, by a cell.
+std::vector<Eigen::Vector2d> rounded(const Polygon& polygon, int cell_px) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector2i& corner : polygon) corners.emplace_back(corner.cast<double>());
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<Eigen::Vector2d> cut_corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector2d& from = corners[i];
+      const Eigen::Vector2d side = corners[(i + 1) % corners.size()] - from;
+      const double share = std::min(0.25, cell_px / std::max(1.0, side.norm()));
+      cut_corners.emplace_back(from + share * side);
+      cut_corners.emplace_back(from + (1 - share) * side);
+    }
+    corners = std::move(cut_corners);
+  }
+  return corners;
+}
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
@@ -136,12 +210,12 @@ std::string kindText(const ObjectEstimate& object) {
 
 /// Distance, and speed with its standard deviation, as far as they are numbers.
 std::string factsText(const ObjectEstimate& object, double distance_m) {
-  std::string text = std::isfinite(distance_m) ? format("%.0f m", distance_m) : "";
+  std::string text = std::isfinite(distance_m) ? fmt::format("{:.0f} m", distance_m) : "";
   if (object.state == ObjectState::kStopped) return text + " · stopped";
   const double speed_mps = object.velocity_world_mps.norm();
   if (!std::isfinite(speed_mps)) return text;
-  text += format(" · %.1f", speed_mps);
-  if (object.speed_sigma_mps > 0) text += format(" ±%.1f", object.speed_sigma_mps);
+  text += fmt::format(" · {:.1f}", speed_mps);
+  if (object.speed_sigma_mps > 0) text += fmt::format(" ±{:.1f}", object.speed_sigma_mps);
   return text + " m/s";
 }
 
@@ -164,6 +238,21 @@ void drawObject(Sheet& sheet, const Eye& eye, const ObjectEstimate& object) {
   drawMotion(sheet, eye, object, front_body);
 }
 
+/// Tints each object's pixels of a mask in the color of its track, with a crisp rim.
+void paintMask(Sheet& sheet, const Gray16Image& mask) {
+  constexpr double kInside = 0.3, kRim = 0.95;
+  for (const auto& [value, bounds] : boundsByValue(mask)) {
+    const Color color = trackColor(trackOfMask(value));
+    const ObjectMask object = cut(mask, value, bounds);
+    for (const Polygon& polygon : outlinePolygons(object, mask.width, mask.height)) {
+      const auto corners = rounded(polygon, object.cell_px);
+      sheet.note(Mark::kMask, corners);
+      sheet.canvas.fill(corners, {color, kInside});
+      sheet.canvas.outline(corners, {.color = color, .width_px = 1.2, .opacity = kRim});
+    }
+  }
+}
+
 }  // namespace
 
 void paintImageView(Sheet& sheet, const DrawnImages& images, const RecordedDrive& drive, std::size_t frame) {
@@ -184,19 +273,10 @@ void paintImageView(Sheet& sheet, const DrawnImages& images, const RecordedDrive
   for (const auto& [distance_m, object] : by_distance) {
     const Rectangle box = boxOf(*object);
     if (!(sheet.area().overlap(box.grownBy(1)) > 0)) continue;
-    tags.push_back({trackColor(object->track),
-                    format("#%lld", static_cast<long long>(object->track.value)) + kindText(*object),
+    tags.push_back({trackColor(object->track), fmt::format("#{}", object->track.value) + kindText(*object),
                     factsText(*object, distance_m), box});
   }
   paintTags(sheet, tags);
-}
-
-RgbImage drawImageView(const DrawnImages& images, const RecordedDrive& drive, std::size_t frame) {
-  Canvas canvas(images.left);
-  Marks marks;
-  Sheet sheet{canvas, marks};
-  paintImageView(sheet, images, drive, frame);
-  return canvas.image();
 }
 
 }  // namespace motorcade

@@ -3,7 +3,6 @@
 #include <array>
 #include <functional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "apps/draw/palette.hpp"

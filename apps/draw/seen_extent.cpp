@@ -1,7 +1,6 @@
 #include "apps/draw/seen_extent.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>

@@ -1,25 +1,43 @@
-#include "apps/draw/top_view.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 
 #include "apps/draw/palette.hpp"
 #include "apps/draw/seen_extent.hpp"
 #include "apps/draw/tags.hpp"
 #include "apps/draw/top_map.hpp"
-#include "apps/draw/truth_view.hpp"
+#include "apps/draw/views.hpp"
 #include "core/object_place.hpp"
 
 namespace motorcade {
 namespace {
+
+using Eigen::Vector2d, Eigen::Vector3d;
+
+void drawWay(Sheet& sheet, const std::vector<Vector2d>& way) {
+  if (way.size() < 2 || !sheet.note(Mark::kTruePath, way)) return;
+  sheet.canvas.polyline(way, {.color = kTruth, .width_px = 1.1, .opacity = 0.75, .dashes_px = {5, 4}});
+}
+
+void drawLabel(Sheet& sheet, const ObjectTruth& truth, bool moves, const SE3& T_cam_object, const TopMap& map) {
+  const double length_m = truth.size_m.z(), width_m = truth.size_m.y();
+  std::vector<Vector2d> corners;
+  for (const auto& [ahead, aside] : std::array{std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1), std::pair(-1, 1)})
+    corners.push_back(map(T_cam_object * Vector3d(0.5 * ahead * length_m, 0, 0.5 * aside * width_m)));
+  if (!sheet.note(moves ? Mark::kTrueMover : Mark::kTrueParked, corners)) return;
+  if (moves) {
+    sheet.canvas.outline(corners, {.color = kTruth, .width_px = 1.3, .dashes_px = {5, 3}});
+  } else {
+    sheet.canvas.fill(corners, {kDimInk, 0.12});
+    sheet.canvas.outline(corners, {.color = kDimInk, .width_px = 1.2, .dashes_px = {1.5, 2.5}});
+  }
+}
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
@@ -60,12 +78,12 @@ void drawGrid(Canvas& canvas, const TopMap& map) {
   };
   lines(map.origin_px.x(), width, [&](double x, double m) {
     canvas.line({x, 0}, {x, height}, {.color = kGridLine, .opacity = m == 0 ? 0.999 : 0.6});
-    if (x < width - 40) canvas.text({x + 5, height - 7}, format("%.0f m", m), style);
+    if (x < width - 40) canvas.text({x + 5, height - 7}, fmt::format("{:.0f} m", m), style);
   });
   lines(map.origin_px.y(), height, [&](double y, double m) {
     canvas.line({0, y}, {width, y}, {.color = kGridLine, .opacity = m == 0 ? 0.999 : 0.6});
-    const char* const side = m < 0 ? "%.0f m left" : "%.0f m right";
-    if (m != 0 && y > 14 && y < height - 22) canvas.text({6, y - 5}, format(side, std::abs(m)), style);
+    if (m != 0 && y > 14 && y < height - 22)
+      canvas.text({6, y - 5}, fmt::format("{:.0f} m {}", std::abs(m), m < 0 ? "left" : "right"), style);
   });
 }
 
@@ -192,6 +210,29 @@ Rectangle boundsOf(const std::vector<Vector2d>& corners) {
   return {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
 }
 
+/// Paints from above the true paths of camera and movers, and the positions of movers and parked cars.
+void paintTruth(Sheet& sheet, const RecordedDrive& drive, std::size_t frame, const TopMap& map) {
+  if (frame >= drive.T_world_cam_true.size()) return;
+  const SE3 T_cam_world = drive.T_world_cam_true[frame].inverse();
+  std::vector<Vector2d> path;
+  for (std::size_t i = 0; i <= frame; ++i) path.push_back(map(T_cam_world * drive.T_world_cam_true[i].translation()));
+  drawWay(sheet, path);
+  const auto here = drive.true_objects.find(static_cast<std::int64_t>(frame));
+  if (here == drive.true_objects.end()) return;
+  for (const ObjectTruth& truth : here->second) {
+    const bool moves = drive.true_movers.contains(truth.id);
+    drawLabel(sheet, truth, moves, T_cam_world * truth.T_world_object, map);
+    if (!moves) continue;
+    std::vector<Vector2d> way;
+    for (const auto& [at, objects] : drive.true_objects) {
+      if (at > here->first) break;
+      for (const ObjectTruth& object : objects)
+        if (object.id == truth.id) way.push_back(map(T_cam_world * object.T_world_object.translation()));
+    }
+    drawWay(sheet, way);
+  }
+}
+
 void drawObjects(const View& view) {
   std::vector<Tag> tags;
   const auto objects = view.drive.objectsAt(view.frame);
@@ -205,8 +246,7 @@ void drawObjects(const View& view) {
         extent ? footprint(view, object, *extent) : std::vector<Vector2d>{view.at(object.T_world_body.translation())};
     const Rectangle bounds = boundsOf(corners);
     if (view.sheet.area().overlap(bounds.grownBy(1)) > 0)
-      tags.push_back(
-          {trackColor(object.track), format("#%lld", static_cast<long long>(object.track.value)), "", bounds});
+      tags.push_back({trackColor(object.track), fmt::format("#{}", object.track.value), "", bounds});
   }
   drawPoints(view);
   for (const ObjectEstimate& object : objects) drawEllipse(view, object);
@@ -228,20 +268,6 @@ void paintTopView(Sheet& sheet, const RecordedDrive& drive, std::size_t frame) {
   drawWays(view);
   drawOwnPath(view);
   drawObjects(view);
-}
-
-RgbImage drawTopView(const RecordedDrive& drive, std::size_t frame, ImageSize size) {
-  Canvas canvas(size.width, size.height, kBackdrop);
-  Marks marks;
-  const int legend = legendHeight(size.width);
-  const bool roomy = size.height > 2 * legend;
-  Canvas scene = canvas.part(0, 0, size.width, roomy ? size.height - legend : size.height);
-  Sheet sheet{scene, marks};
-  paintTopView(sheet, drive, frame);
-  if (!roomy) return canvas.image();
-  Canvas below = canvas.part(0, size.height - legend, size.width, legend);
-  drawLegend(below, marks);
-  return canvas.image();
 }
 
 }  // namespace motorcade

@@ -4,22 +4,15 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
-#include <string_view>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
-#include <sys/mman.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "io/files/errors.hpp"
@@ -31,19 +24,19 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = std::chrono::seconds(120);  // with an ffmpeg that takes nothing, or does not end
+constexpr auto kLastWords = std::chrono::seconds(5);   // from when it takes nothing more until it has said why
 constexpr auto kStep = std::chrono::milliseconds(50);
 
 bool isWebm(const fs::path& file) { return file.extension() == ".webm"; }
 
 /// Arguments of ffmpeg. The pictures are padded to even sides, which these formats require.
 std::vector<std::string> argumentsFor(const fs::path& partial, bool webm, const VideoWriter::Format& format) {
-  std::array<char, 32> rate;
-  std::snprintf(rate.data(), rate.size(), "%.6f", format.rate_hz);
-  std::vector<std::string> arguments{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y"};
+  const std::string rate = std::to_string(format.rate_hz);
+  std::vector<std::string> arguments{"-hide_banner", "-loglevel", "error", "-nostdin", "-y"};
   const auto add = [&](std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
   };
-  add({"-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", format.size.text(), "-framerate", rate.data()});
+  add({"-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", format.size.text(), "-framerate", rate});
   add({"-i", "pipe:0", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"});
   if (webm)
     add({"-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-cpu-used", "4", "-row-mt", "1", "-f", "webm"});
@@ -54,52 +47,11 @@ std::vector<std::string> argumentsFor(const fs::path& partial, bool webm, const 
 }
 
 /// The first line, which names the error; the others are its consequences.
-std::string firstLine(int descriptor) {
-  std::array<char, 300> text;
-  const ssize_t got = ::pread(descriptor, text.data(), text.size(), 0);
-  const std::string_view all(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  return std::string(all.substr(0, all.find('\n')));
+std::string firstLine(const std::string& text) { return text.substr(0, std::min<std::size_t>(text.find('\n'), 300)); }
+
+std::string endText(const std::optional<ChildEnd>& end) {
+  return end && end->signal != 0 ? "ffmpeg was ended by signal " + std::to_string(end->signal) : "ffmpeg failed";
 }
-
-std::string endText(int status) {
-  return WIFSIGNALED(status) ? "ffmpeg was ended by signal " + std::to_string(WTERMSIG(status)) : "ffmpeg failed";
-}
-
-/// Settings of a child process that differ from this one's.
-class SpawnSettings {
- public:
-  SpawnSettings() {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawnattr_init(&attributes_);
-  }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
-
-  void redirect(int from, int to) { posix_spawn_file_actions_adddup2(&actions_, from, to); }
-  /// Starts the child in a group of its own, as this process handles Ctrl-C in a terminal, and without blocked signals.
-  void separate() {
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-  }
-  /// Returns an error number, 0 when all is well.
-  int spawn(pid_t& process, const fs::path& program, std::vector<std::string> arguments) const {
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    return posix_spawn(&process, program.c_str(), &actions_, &attributes_, pointers.data(), environ);
-  }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
 
 }  // namespace
 
@@ -121,49 +73,26 @@ void requireVideoName(const fs::path& file) {
 
 VideoWriter::VideoWriter(const fs::path& file, const Format& format, const fs::path& ffmpeg,
                          const std::atomic<bool>& stop)
-    : file_(file),
-      partial_(file.string() + ".part"),
-      size_(format.size),
-      stop_(stop),
-      words_(::memfd_create("ffmpeg", MFD_CLOEXEC)) {
-  start(ffmpeg, format);
+    : file_(file), partial_(file.string() + ".part"), size_(format.size), stop_(stop) {
+  // A socket: writing to a pipe that ffmpeg has closed would end this process with SIGPIPE.
+  std::array<int, 2> ends{-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw OutputError(file_.string() + ": cannot be written: " + std::strerror(errno));
+  pictures_.emplace(ends[0]);
+  const FileDescriptor theirs(ends[1]);
+  std::vector<std::string> words = argumentsFor(partial_, isWebm(file_), format);
+  words.insert(words.begin(), ffmpeg.string());
+  process_.emplace(ChildCommand{.words = words, .input = theirs.number(), .output = words_.descriptor()});
 }
 
 VideoWriter::~VideoWriter() {
-  if (process_ > 0) {
-    ::kill(-process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-  }
+  process_.reset();
   std::error_code ignored;
   fs::remove(partial_, ignored);
 }
 
-/// Sends pictures over a socket. Writing to a pipe that ffmpeg has closed would end this process with SIGPIPE.
-void VideoWriter::start(const fs::path& ffmpeg, const Format& format) {
-  std::array<int, 2> ends{-1, -1};
-  if (words_.number() < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw OutputError(file_.string() + ": cannot be written: " + std::strerror(errno));
-  pictures_.emplace(ends[0]);
-  const FileDescriptor theirs(ends[1]);
-  SpawnSettings settings;
-  settings.redirect(theirs.number(), STDIN_FILENO);
-  settings.redirect(words_.number(), STDOUT_FILENO);
-  settings.redirect(words_.number(), STDERR_FILENO);
-  settings.separate();
-  const int error = settings.spawn(process_, ffmpeg, argumentsFor(partial_, isWebm(file_), format));
-  if (error == 0) return;
-  process_ = -1;
-  throw OutputError(file_.string() + ": " + ffmpeg.string() + " cannot be started: " + std::strerror(error));
-}
-
-bool VideoWriter::hasEnded(int& status) {
-  if (process_ > 0 && ::waitpid(process_, &status, WNOHANG) != process_) return false;
-  process_ = -1;
-  return true;
-}
-
 void VideoWriter::fail(const std::string& what) {
-  const std::string words = firstLine(words_.number());
+  const std::string words = firstLine(words_.text());
   throw OutputError(file_.string() + ": cannot be written: " + what + (words.empty() ? "" : ": " + words));
 }
 
@@ -179,10 +108,7 @@ void VideoWriter::write(const RgbImage& picture) {
       sent += static_cast<std::size_t>(got);
       until = Clock::now() + kPatience;
     } else if (errno == EPIPE || errno == ECONNRESET) {
-      int status = 0;
-      for (int i = 0; i < 100 && !hasEnded(status); ++i)
-        std::this_thread::sleep_for(kStep);  // its words may come later
-      fail(endText(status));
+      fail(endText(process_->wait(kLastWords)));
     } else if (errno != EAGAIN && errno != EINTR) {
       fail(std::strerror(errno));
     } else if (Clock::now() > until) {
@@ -196,14 +122,12 @@ void VideoWriter::write(const RgbImage& picture) {
 
 void VideoWriter::finish() {
   pictures_.reset();
-  int status = 0;
-  const auto until = Clock::now() + kPatience;
-  while (!hasEnded(status)) {
+  std::optional<ChildEnd> end;
+  for (const auto until = Clock::now() + kPatience; !(end = process_->wait(kStep));) {
     if (stop_) return;
     if (Clock::now() > until) fail("ffmpeg does not end");
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail(endText(status));
+  if (!end->good()) fail(endText(end));
   std::error_code error;
   fs::rename(partial_, file_, error);
   if (error) throw OutputError(file_.string() + ": cannot be written: " + error.message());

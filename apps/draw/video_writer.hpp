@@ -5,9 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <sys/types.h>
-
-#include "io/files/file_descriptor.hpp"
+#include "apps/console/child_process.hpp"
 #include "io/images/image_file.hpp"
 
 namespace motorcade {
@@ -39,16 +37,14 @@ class VideoWriter {
   void finish();
 
  private:
-  void start(const std::filesystem::path& ffmpeg, const Format& format);
   [[noreturn]] void fail(const std::string& what);
-  bool hasEnded(int& status);
 
   std::filesystem::path file_, partial_;
   ImageSize size_;
   const std::atomic<bool>& stop_;
   std::optional<FileDescriptor> pictures_;
-  FileDescriptor words_;  // what ffmpeg writes to its standard error
-  pid_t process_ = -1;    // running, or not waited for
+  ChildOutput words_;  // of ffmpeg
+  std::optional<ChildProcess> process_;
 };
 
 }  // namespace motorcade

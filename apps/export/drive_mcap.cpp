@@ -10,7 +10,6 @@
 #include <motorcade/FrameDiagnostics.pb.h>
 
 #include "apps/export/foxglove_fields.hpp"
-#include "apps/export/frame_messages.hpp"
 
 namespace motorcade {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/export/exported_frame.hpp"
+#include "apps/export/frame_messages.hpp"
 #include "apps/export/mcap_writer.hpp"
-#include "apps/export/scene_messages.hpp"
 
 namespace motorcade {
 

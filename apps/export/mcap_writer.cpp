@@ -1,7 +1,6 @@
 #include "apps/export/mcap_writer.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace motorcade::mcap {
 namespace {

@@ -12,7 +12,6 @@
 #include "apps/export/foxglove_fields.hpp"
 #include "apps/export/mcap_writer.hpp"
 #include "apps/export/osi_sensor_data.hpp"
-#include "apps/export/osi_version.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 
 namespace motorcade {

@@ -1,20 +1,27 @@
 #include "apps/inject/fault_injector.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <utility>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "apps/inject/image_faults.hpp"
-#include "apps/inject/process_limits.hpp"
 #include "io/images/image_file.hpp"
 
 namespace motorcade {
 namespace {
+
+std::uint64_t addressSpace_bytes() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
 
 /// Number of pairs that the faults reach back, at least one.
 std::size_t reachOf(const FaultSpec& spec) {
@@ -22,6 +29,21 @@ std::size_t reachOf(const FaultSpec& spec) {
   for (const Fault& fault : spec.faults)
     if (fault.kind == FaultKind::kApart) most = std::max(most, fault.value);
   return static_cast<std::size_t>(most);
+}
+
+// Limits of this process, like those of a small machine or a full disk. They cannot be taken back.
+
+/// Lets no file grow beyond this size: a write fails as on a full disk.
+void limitFileSize(std::uint64_t bytes) {
+  const rlimit both{bytes, bytes};
+  setrlimit(RLIMIT_FSIZE, &both);
+}
+
+/// Lets the address space grow by `bytes` and no more.
+void limitFurtherMemory(std::uint64_t bytes) {
+  const rlim_t limit = addressSpace_bytes() + bytes;
+  const rlimit both{limit, limit};
+  setrlimit(RLIMIT_AS, &both);
 }
 
 }  // namespace

@@ -3,10 +3,8 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <functional>
 #include <string>
-#include <utility>
 
 #include "apps/inject/fault_spec.hpp"
 #include "core/image.hpp"

@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <type_traits>
 
 #include "motorcade/motorcade.h"
 #include "motorcade/motorcade.hpp"
@@ -23,11 +24,14 @@ class CallError : public Error {
 /// Keeps the texts for `motorcade_last_error`, cut to its buffer. It takes nothing from the heap, which may be used up.
 motorcade_code failed(motorcade_code code, const char* field, const char* message) noexcept;
 
-/// Makes a call of the C interface and catches every exception.
+/// Makes a call of the C interface and catches every exception. A call without a code of its own is OK when it returns.
 template <class Call>
 motorcade_code guarded(const Call& call) noexcept {
   try {
-    return call();
+    if constexpr (std::is_void_v<decltype(call())>)
+      return call(), MOTORCADE_OK;
+    else
+      return call();
   } catch (const CallError& error) {
     return failed(error.code(), error.field().c_str(), error.what());
   } catch (const Error& error) {

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
+#include <string>
+
+#include "apps/pipeline/log_callback.hpp"
 
 namespace motorcade {
 
@@ -31,5 +35,20 @@ class Visit {
  private:
   std::atomic<int>& visits_;
 };
+
+/// Calls a callback for `what`. Its exceptions are logged and do not prevent the next call.
+template <class Call>
+void callLogged(const LogCallback& log, const char* what, const Call& call) {
+  const auto complain = [&](const char* why) {
+    tell(log, LogLevel::kError, [&] { return std::string("the callback for ") + what + ": " + why; });
+  };
+  try {
+    call();
+  } catch (const std::exception& error) {
+    complain(error.what());
+  } catch (...) {
+    complain("it threw what is no std::exception");
+  }
+}
 
 }  // namespace motorcade

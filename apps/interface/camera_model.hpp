@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/calibration_errors.hpp"
 #include "core/image.hpp"
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"

@@ -1,15 +1,34 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 
+#include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/log_callback.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "apps/watch/rig_watch.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {
+
+/// Reason why a pair was not taken; static text. Empty where the reason is not the pair's.
+const char* reasonOf(Admission admission);
+
+/// Notices stamps that seem to have another unit: several pairs in a row are too close together, or far apart. Used by
+/// the pushing thread only.
+class StampDoubts {
+ public:
+  /// A sentence about a pair that was not taken, once.
+  std::optional<std::string> refused(Admission admission, std::int64_t stamp_ns);
+  void taken();
+
+ private:
+  int untimely_ = 0;
+  bool told_ = false;
+};
 
 /// Looks at a tracker's pairs when their results are out, so that no result waits for it. It logs faults of the rig and
 /// changes of it.

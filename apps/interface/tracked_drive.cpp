@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "apps/interface/call_guards.hpp"
-#include "apps/interface/callback_call.hpp"
-#include "apps/interface/vehicle_motion_input.hpp"
 
 namespace motorcade {
 

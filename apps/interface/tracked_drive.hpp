@@ -8,15 +8,13 @@
 
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/final_taker.hpp"
-#include "apps/interface/gray_image.hpp"
+#include "apps/interface/pair_input.hpp"
 #include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
-#include "apps/interface/stamp_doubts.hpp"
+#include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/pipeline.hpp"
-#include "apps/pipeline/pipeline_config.hpp"
-#include "apps/watch/own_vehicle_news.hpp"
-#include "apps/watch/vehicle_motion_news.hpp"
+#include "apps/watch/vehicle_news.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {

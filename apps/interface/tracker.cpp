@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "apps/interface/call_guards.hpp"
-#include "apps/interface/callback_call.hpp"
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/pair_input.hpp"
 #include "apps/interface/result_conversion.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "apps/interface/camera_model.hpp"
-#include "apps/pipeline/configuration.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {

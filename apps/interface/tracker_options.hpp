@@ -1,7 +1,7 @@
 #pragma once
 
+#include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/log_callback.hpp"
-#include "apps/pipeline/pipeline_config.hpp"
 #include "motorcade/motorcade.hpp"
 
 namespace motorcade {

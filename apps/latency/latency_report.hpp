@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -51,5 +52,15 @@ struct LatencyReport {
 
 /// Reports the latency of the frames that entered the pipeline; the slowest come first.
 LatencyReport latencyReport(const std::vector<FrameRow>& rows, std::size_t slowest = 5);
+
+/// A table of at most 100 columns.
+std::string latencyTable(const LatencyReport& report);
+
+struct LatencyOptions {
+  std::filesystem::path run{}, json{};
+};
+
+/// Prints the times of a run's frames by their causes; returns the exit code. Failures are UserErrors.
+int runLatency(const LatencyOptions& options);
 
 }  // namespace motorcade

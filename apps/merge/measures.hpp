@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,8 +17,9 @@ enum class Better { kLower, kHigher, kNeither };
 /// A number that every result of a batch may have, and its position in a file.
 struct Measure {
   std::string_view name;   // of its column, with its unit
-  std::string_view path;   // JSON pointer in evaluation.json, or behind `summary:` in summary.json
-  std::string_view guard;  // JSON pointer of a count that must not be zero, or the value means nothing; empty for none
+  std::string_view part;   // JSON pointer in evaluation.json, or behind `summary:` in summary.json
+  std::string_view value;  // its JSON pointer in that part
+  std::string_view count;  // in that part, must not be zero, or the value means nothing; empty for none
   Better better = Better::kNeither;
 };
 
@@ -32,5 +34,9 @@ using MeasureValues = std::vector<double>;
 
 /// The values of a result; either file's content may be null. Values that are computed from several stay empty here.
 MeasureValues measuresOf(const nlohmann::json& evaluation, const nlohmann::json& summary);
+
+/// The name of a measure (`allMeasures`) for readers, with its unit in brackets: `camera_rpe_t_rmse_m` is "camera RPE
+/// of translation, RMSE [m]". It is made of the key's words, so that a new measure has one, too.
+std::string readableName(std::string_view measure);
 
 }  // namespace motorcade

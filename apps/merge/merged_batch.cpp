@@ -13,8 +13,8 @@
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_performer.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/json_text.hpp"
-#include "io/files/shell_words.hpp"
 #include "io/files/text_file.hpp"
 #include "io/results/frame_table.hpp"
 

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/merge/covariance_reliability.hpp"
 #include "apps/merge/measures.hpp"
-#include "apps/merge/reliability_table.hpp"
+#include "apps/merge/reliability_tables.hpp"
 #include "apps/tasks/plan.hpp"
 #include "apps/tasks/task_record.hpp"
 

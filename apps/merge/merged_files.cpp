@@ -1,12 +1,17 @@
 #include "apps/merge/merged_files.hpp"
 
 #include <cmath>
+#include <iostream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/merge/published_tables.hpp"
+#include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_json.hpp"
+#include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
+#include "io/files/line_file.hpp"
 
 namespace motorcade {
 namespace {
@@ -106,8 +111,24 @@ Json jsonOf(const PublishedFigure& figure) {
 
 std::string joined(const std::vector<std::string>& fields) { return fmt::format("{}\n", fmt::join(fields, ",")); }
 
-}  // namespace
+namespace fs = std::filesystem;
 
+Merged mergedOf(const MergeOptions& options) {
+  Merged merged{.batch = readBatch(absoluteFolder(options.batch), options.baseline_set)};
+  if (merged.batch.count(TaskOutcome::kDone) == 0)
+    throw InputError(options.batch.string() +
+                     ": no task of this plan is done yet, or all were planned anew since; see motorcade batch status");
+  merged.groups = groupsOf(merged.batch);
+  if (!options.against.empty()) {
+    const MergedBatch other = readBatch(absoluteFolder(options.against), "");
+    if (other.count(TaskOutcome::kDone) == 0)
+      throw InputError(options.against.string() + ": no task is done there, so there is nothing to compare with");
+    merged.comparison = compareBatches(merged.groups, groupsOf(other), options.against);
+  }
+  return merged;
+}
+
+/// A row for each task, with every measure.
 std::string csvOf(const Merged& merged) {
   std::vector<std::string> head{"task", "drive", "set", "seed", "repetition", "status", "failure"};
   for (const Measure& measure : allMeasures()) head.emplace_back(measure.name);
@@ -136,6 +157,20 @@ std::string csvOf(const Merged& merged) {
   }
   return csv;
 }
+
+/// Tasks without a result, and the reasons.
+ResultTable unfinishedTable(const MergedBatch& batch) {
+  ResultTable table{.title = "Without result", .heads = {"task", "status", "why", "last line"}, .names = 4};
+  for (const MergedTask& task : batch.tasks) {
+    if (task.outcome == TaskOutcome::kDone) continue;
+    const bool has_lines = task.record.failure && !task.record.failure->last_lines.empty();
+    table.rows.push_back({task.task.name, std::string(outcomeName(task.outcome)), failureOf(task),
+                          has_lines ? task.record.failure->last_lines.back() : ""});
+  }
+  return table;
+}
+
+}  // namespace
 
 std::string jsonOf(const Merged& merged) {
   const MergedBatch& batch = merged.batch;
@@ -203,17 +238,6 @@ ResultTable leftOutTable(const MergedBatch& batch) {
   return table;
 }
 
-ResultTable unfinishedTable(const MergedBatch& batch) {
-  ResultTable table{.title = "Without result", .heads = {"task", "status", "why", "last line"}, .names = 4};
-  for (const MergedTask& task : batch.tasks) {
-    if (task.outcome == TaskOutcome::kDone) continue;
-    const bool has_lines = task.record.failure && !task.record.failure->last_lines.empty();
-    table.rows.push_back({task.task.name, std::string(outcomeName(task.outcome)), failureOf(task),
-                          has_lines ? task.record.failure->last_lines.back() : ""});
-  }
-  return table;
-}
-
 ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames) {
   ResultTable table{.title = title, .heads = {"task", "what", "to see it", "frame", value}, .names = 3};
   for (const WorstFrame& frame : frames)
@@ -222,6 +246,22 @@ ResultTable worstFrameTable(const std::string& title, const std::string& value, 
                                       std::max<std::int64_t>(0, frame.frame - 1), frame.frame + 1),
                           std::to_string(frame.frame), fmt::format("{:.4g}", frame.value)});
   return table;
+}
+
+int runMerge(const MergeOptions& options) {
+  const Merged merged = mergedOf(options);
+  const fs::path out = options.out.empty() ? BatchFolder(options.batch).merged() : options.out;
+  makeFolder(out);
+  writeAtOnce(out / "results.csv", csvOf(merged));
+  writeAtOnce(out / "results.json", jsonOf(merged));
+  writeAtOnce(out / "results.md", markdownOf(merged));
+  writeAtOnce(out / "report.html", pageOf(merged));
+  std::cout << markdownOf(overviewTable(merged.groups));
+  const ResultTable means = publishedMeans(merged.groups, merged.batch.plan.published);
+  if (!means.rows.empty()) std::cout << markdownOf(means);
+  if (merged.comparison) std::cout << markdownOf(testTable(*merged.comparison));
+  std::cout << "tables and page: " << out.string() << "/results.md, .csv, .json, report.html\n";
+  return 0;
 }
 
 }  // namespace motorcade

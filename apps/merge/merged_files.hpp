@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +9,7 @@
 #include "apps/merge/groups.hpp"
 #include "apps/merge/merged_batch.hpp"
 
-/// Files of a merged batch; each function returns the content of one.
+/// The command `batch merge`, and the files that it writes; each function returns the content of one.
 namespace motorcade {
 
 /// The content of all files.
@@ -18,8 +19,6 @@ struct Merged {
   std::optional<BatchComparison> comparison{};
 };
 
-/// A row for each task, with every measure.
-std::string csvOf(const Merged& merged);
 /// Tasks, groups, worst frames and the comparison.
 std::string jsonOf(const Merged& merged);
 /// The tables.
@@ -31,9 +30,17 @@ std::string pageOf(const Merged& merged);
 std::vector<ResultTable> publishedSection(const Merged& merged);
 /// Drives that are not on the disk.
 ResultTable leftOutTable(const MergedBatch& batch);
-/// Tasks without a result, and the reasons.
-ResultTable unfinishedTable(const MergedBatch& batch);
 /// Frames to look at, of one kind of `value`.
 ResultTable worstFrameTable(const std::string& title, const std::string& value, const std::vector<WorstFrame>& frames);
+
+struct MergeOptions {
+  std::filesystem::path batch{}, out{};  // `merged` in the batch's folder when empty
+  std::filesystem::path against{};       // another batch to compare with; empty for none
+  std::string baseline_set{};            // whose objects others are compared with; the plan's when empty
+};
+
+/// Writes results.csv, results.json, results.md and report.html of all finished tasks, and prints the most important
+/// table. Returns the exit code. Failures are UserErrors.
+int runMerge(const MergeOptions& options);
 
 }  // namespace motorcade

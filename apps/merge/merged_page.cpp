@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <set>
 
 #include <fmt/format.h>
 
-#include "apps/html/dot_chart.hpp"
 #include "apps/html/html_page.hpp"
 #include "apps/html/svg_chart.hpp"
 #include "apps/merge/merged_files.hpp"

@@ -5,7 +5,7 @@
 
 #include "apps/merge/groups.hpp"
 #include "apps/merge/result_tables.hpp"
-#include "apps/tasks/published_figures.hpp"
+#include "apps/tasks/plan.hpp"
 
 /// Published figures beside those of a batch. Only measures of the same definition are compared.
 namespace motorcade {

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "apps/pipeline/admission.hpp"
 #include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/frame_clock.hpp"
 #include "apps/pipeline/gap_filler.hpp"

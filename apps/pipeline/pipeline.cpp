@@ -5,7 +5,6 @@
 #include <thread>
 #include <utility>
 
-#include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/flow_graph.hpp"
 #include "apps/pipeline/intake.hpp"
 #include "apps/pipeline/job.hpp"

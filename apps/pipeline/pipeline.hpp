@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/pipeline/admission.hpp"
+#include "apps/pipeline/entrance.hpp"
 #include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/log_callback.hpp"
 #include "apps/pipeline/pipeline_params.hpp"

@@ -1,7 +1,6 @@
 #include "apps/pipeline/pipeline_params.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace motorcade {
 

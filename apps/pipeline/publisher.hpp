@@ -1,17 +1,31 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "apps/pipeline/gap_filler.hpp"
 #include "apps/pipeline/job.hpp"
-#include "apps/pipeline/object_ages.hpp"
 #include "apps/pipeline/pipeline_params.hpp"
 #include "apps/pipeline/pipeline_result.hpp"
+#include "core/messages.hpp"
 #include "core/spsc_ring.hpp"
 
 namespace motorcade {
+
+/// Fills in the time since each object was first followed. Call it in frame order, for online and final estimates
+/// apart.
+class ObjectAges {
+ public:
+  void fill(FrameEstimate& estimate);
+
+ private:
+  struct Life {
+    Timestamp first, last;
+  };
+  std::map<TrackId, Life> lives_;
+};
 
 /// The output of results: copies the facts of a finished job, hands them to the consumer and gives the job back.
 class Publisher {

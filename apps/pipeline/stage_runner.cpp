@@ -1,19 +1,32 @@
 #include "apps/pipeline/stage_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include <oneapi/tbb/task_arena.h>
 
-#include "apps/pipeline/stage_fallbacks.hpp"
-#include "core/thread_clock.hpp"
+#include "core/thread_placement.hpp"
+#include "core/unknown_motion.hpp"
 
 namespace motorcade {
 namespace {
+
+template <class Message>
+std::shared_ptr<const Message> shared(Message message) {
+  return std::make_shared<const Message>(std::move(message));
+}
+
+/// Head of a frame that is lost, as a stage failed on which its pose depends.
+FrameHead lost(FrameHead head) {
+  head.status = FrameStatus::kLost;
+  head.cause = FrameCause::kFailed;
+  return head;
+}
 
 /// Calls `work` and returns its exception in words, empty for none.
 template <class Work>
@@ -34,6 +47,75 @@ void nameProblem(Job& job, Stage stage, const std::string& problem) {
   } catch (const std::bad_alloc&) {
     job.problemOf(stage) = kNoMemoryLeft;
   }
+}
+
+// Messages that replace those of a stage that threw. They equal the stage's messages for a frame without images or
+// without an ego-motion, so that later stages meet nothing new.
+
+/// The camera's motion without objects.
+FrameMeasurementsPtr cameraAlone(const SceneMotion& motion) {
+  FrameMeasurements camera;
+  camera.head = motion.head.status == FrameStatus::kGood ? lost(motion.head) : motion.head;
+  camera.odometry = motion.odometry;
+  return shared(std::move(camera));
+}
+
+/// Estimates without a pose. The publisher knows the last pose, and predicts.
+EstimatesPtr lostEstimates(const FrameMeasurements& measurements) {
+  Estimates estimates;
+  estimates.online.head = lost(measurements.head);
+  return shared(std::move(estimates));
+}
+
+OpticalFlowPtr noFlow(const FeaturesPtr& features) {
+  return shared(OpticalFlow{.features = features, .observations = {}});
+}
+
+StereoMatchesPtr noMatches(const FeaturesPtr& features) {
+  StereoMatches none{.features = features, .of_corner = {}};
+  none.of_corner.resize(features->corners.size());
+  return shared(std::move(none));
+}
+
+/// No points and no components; the camera moves as in the frame before, in the same segment.
+SceneMotionPtr predictedMotion(const StereoFrame& frame, const SceneMotion& before) {
+  SceneMotion predicted;
+  predicted.head = frame.rejected() ? frame.head : lost(frame.head);
+  predicted.head.segment = before.head.segment;
+  predicted.odometry = {before.odometry.T_previous_now, unknownMotionCovariance()};
+  return shared(std::move(predicted));
+}
+
+/// The estimates without shapes. Objects keep the probability of existence that is known of them; others are dropped,
+/// because only the shapes tell whether they are there.
+EstimatesPtr withoutShapes(const Estimates& estimates, const KnownExistence& known) {
+  Estimates without = estimates;
+  const auto keepKnown = [&](FrameEstimate& frame) {
+    std::erase_if(frame.objects, [&](const ObjectEstimate& object) { return !known.contains(object.track); });
+    for (ObjectEstimate& object : frame.objects) object.existence_probability = known.at(object.track);
+  };
+  keepKnown(without.online);
+  std::ranges::for_each(without.settled, keepKnown);
+  std::ranges::for_each(without.finals, keepKnown);
+  return shared(std::move(without));
+}
+
+/// Adds the newest frame's objects to `known`, which keeps the youngest thousand tracks.
+void rememberExistence(const FrameEstimate& frame, KnownExistence& known) {
+  constexpr std::size_t kMostTracks = 1000;
+  for (const ObjectEstimate& object : frame.objects) known[object.track] = object.existence_probability;
+  while (known.size() > kMostTracks) known.erase(known.begin());
+}
+
+/// The frame without its images, rejected for `problem`.
+FeaturesPtr rejectedFeatures(const StereoFrame& frame, const std::string& problem) {
+  StereoFrame rejected;
+  rejected.head = frame.head;
+  rejected.due = frame.due;
+  rejected.reject(FrameCause::kFailed, problem);
+  Features features;
+  features.frame = shared(std::move(rejected));
+  return shared(std::move(features));
 }
 
 }  // namespace

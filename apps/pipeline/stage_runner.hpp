@@ -1,16 +1,19 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "apps/pipeline/job.hpp"
 #include "apps/pipeline/log_callback.hpp"
-#include "apps/pipeline/stage_fallbacks.hpp"
 #include "apps/pipeline/stages.hpp"
 #include "core/messages.hpp"
 #include "frontend/messages.hpp"
 
 namespace motorcade {
+
+/// Each track's probability of existence when the shapes were last estimated.
+using KnownExistence = std::map<TrackId, double>;
 
 /// The pipeline's frame boundary: runs a stage on a job and notes its times. A stage that throws costs its frame, not
 /// the run. The exception is logged and noted in the job, and a fallback replaces the stage's message. Each function

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/pipeline/pipeline_config.hpp"
+#include "apps/pipeline/configuration.hpp"
 #include "apps/pipeline/restarting_backend.hpp"
 #include "core/module.hpp"
 #include "io/files/errors.hpp"

@@ -11,7 +11,6 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "core/thread_placement.hpp"
-#include "core/thread_spread.hpp"
 
 namespace motorcade {
 

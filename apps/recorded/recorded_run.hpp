@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 
@@ -30,5 +31,9 @@ Sequence openSequenceOf(const RunFolder& run, const NamedSequence& named);
 /// Throws InputError, naming both, where a run has frames that the sequence lacks, or most of its frames were taken at
 /// other times. Times do not count if faults changed them on purpose, or if the run did not end in order.
 void requireSameDrive(const RunFolder& run, const Sequence& sequence);
+
+/// Completes the final estimates of a run that did not end in order. Frames without one get the online estimate, moved
+/// to the camera's last final pose. Returns their number.
+std::size_t recoverFinals(RunFolder& run);
 
 }  // namespace motorcade

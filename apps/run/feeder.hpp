@@ -4,9 +4,9 @@
 
 #include "apps/inject/fault_injector.hpp"
 #include "apps/pipeline/pipeline.hpp"
-#include "apps/pipeline/run_listener.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
 #include "apps/run/camera_clock.hpp"
-#include "apps/run/input_watch.hpp"
+#include "apps/run/run_watch.hpp"
 #include "apps/view/replay_gate.hpp"
 #include "io/inputs/pair_source.hpp"
 

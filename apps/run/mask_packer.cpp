@@ -1,11 +1,11 @@
-#include "apps/run/mask_packer.hpp"
-
 #include <algorithm>
 #include <new>
 #include <string_view>
 #include <utility>
 
 #include <zlib.h>
+
+#include "apps/run/object_view_writer.hpp"
 
 namespace motorcade {
 namespace {

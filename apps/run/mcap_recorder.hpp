@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "apps/export/drive_mcap.hpp"
-#include "apps/pipeline/run_listener.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
 #include "core/stereo_camera.hpp"
 
 namespace motorcade {

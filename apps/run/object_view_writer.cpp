@@ -1,6 +1,6 @@
 #include "apps/run/object_view_writer.hpp"
 
-#include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/images/mask_image.hpp"
 #include "io/results/object_points.hpp"
 #include "io/results/outline_polygons.hpp"
@@ -18,9 +18,7 @@ bool isOfMasks(const fs::path& file) {
 }
 
 fs::path preparedMasks(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
+  makeFolder(folder);
   return folder;
 }
 

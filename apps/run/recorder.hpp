@@ -6,13 +6,9 @@
 
 #include "apps/console/progress.hpp"
 #include "apps/pipeline/pipeline_result.hpp"
-#include "apps/pipeline/run_listener.hpp"
-#include "apps/run/followed_frames.hpp"
-#include "apps/run/plausibility.hpp"
-#include "apps/run/result_files.hpp"
+#include "apps/run/run_watch.hpp"
 #include "apps/run/write_queue.hpp"
-#include "apps/watch/own_vehicle_news.hpp"
-#include "apps/watch/vehicle_motion_news.hpp"
+#include "apps/watch/vehicle_news.hpp"
 #include "core/messages.hpp"
 
 namespace motorcade {

@@ -1,7 +1,6 @@
 #include "apps/run/run_input.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -15,11 +14,9 @@
 #include "io/files/errors.hpp"
 #include "io/inputs/instance_source.hpp"
 #include "io/inputs/sequence_decoder.hpp"
-#include "io/inputs/vehicle_motion_file.hpp"
-#include "io/inputs/vehicle_motion_source.hpp"
+#include "io/inputs/vehicle_motion.hpp"
 #include "io/layouts/open_sequence.hpp"
 #include "io/sequence/timestamps.hpp"
-#include "io/stream/stream_sequence.hpp"
 #include "io/stream/y4m_source.hpp"
 
 namespace motorcade {

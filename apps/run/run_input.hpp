@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/pipeline/pipeline_config.hpp"
+#include "apps/pipeline/configuration.hpp"
 #include "apps/run/camera_clock.hpp"
-#include "apps/run/run_options.hpp"
+#include "apps/run/run_command.hpp"
 #include "core/messages.hpp"
 #include "io/bag/bag_drive.hpp"
 #include "io/inputs/pair_source.hpp"

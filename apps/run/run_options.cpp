@@ -1,10 +1,9 @@
-#include "apps/run/run_options.hpp"
-
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "apps/pipeline/configuration.hpp"
+#include "apps/run/run_command.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/console/versions.hpp"
+#include "apps/console/own_program.hpp"
 #include "io/files/json_text.hpp"
 #include "io/results/run_folder.hpp"
 

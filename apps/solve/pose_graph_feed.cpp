@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <memory>
 #include <utility>
 
 #include "backend/factors/pose_factors.hpp"
 #include "backend/graph/held_end_factor.hpp"
 #include "backend/graph/relative_pose_factor.hpp"
 #include "backend/solver/problem_finder.hpp"
-#include "core/thread_clock.hpp"
+#include "core/thread_placement.hpp"
 
 namespace motorcade {
 namespace {

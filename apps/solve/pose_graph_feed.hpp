@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "apps/solve/pose_graph_gauge.hpp"
-#include "apps/solve/pose_graph_index.hpp"
 #include "backend/solver/incremental_solver.hpp"
 
 namespace motorcade {

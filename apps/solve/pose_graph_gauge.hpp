@@ -1,12 +1,42 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "apps/solve/pose_graph_index.hpp"
+#include "io/results/pose_graph.hpp"
 
 namespace motorcade {
+
+/// Numbers the poses of a graph from 0 in the order of their ids, and knows the edges at each.
+class PoseGraphIndex {
+ public:
+  /// Keeps a reference to the graph.
+  explicit PoseGraphIndex(const PoseGraph& graph);
+
+  /// The pose at one edge's other end.
+  struct Neighbor {
+    std::size_t pose, edge;
+  };
+  /// Neighbors in the order of the file.
+  std::span<const Neighbor> neighbors(std::size_t pose) const {
+    return std::span(neighbors_).subspan(first_[pose], first_[pose + 1] - first_[pose]);
+  }
+
+  std::size_t size() const { return graph_.poses.size(); }
+  std::int64_t id(std::size_t pose) const { return graph_.poses[pose]; }
+  /// The pose with this id, or the first with a higher one.
+  std::size_t at(std::int64_t id) const;
+  /// The first pose with a higher id.
+  std::size_t after(std::int64_t id) const;
+
+ private:
+  const PoseGraph& graph_;
+  std::vector<Neighbor> neighbors_;  // those of each pose together
+  std::vector<std::size_t> first_;   // per pose
+};
 
 /// Determines the gauge of a pose graph. Measured motions leave each connected part free to move as a whole: its poses
 /// with a FIX line keep the values of their vertices, or its first pose does. A pose without a vertex that must be held

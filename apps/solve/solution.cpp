@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/thread_clock.hpp"
+#include "core/thread_placement.hpp"
 
 namespace motorcade {
 namespace {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/solve/solution.hpp"
+
 namespace motorcade {
 
 struct SolveOptions {

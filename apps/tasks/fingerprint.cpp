@@ -1,8 +1,5 @@
 #include "apps/tasks/fingerprint.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include <fmt/format.h>
 #include <sys/stat.h>
 // The part of xxHash that is wanted goes into this source alone: no library of it is linked.
@@ -10,7 +7,7 @@
 #include <xxhash.h>
 
 #include "io/files/errors.hpp"
-#include "io/files/natural_order.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/text_file.hpp"
 #include "io/rig/rectification.hpp"
 

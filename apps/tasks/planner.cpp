@@ -7,9 +7,8 @@
 #include <fmt/format.h>
 
 #include "apps/pipeline/configuration.hpp"
-#include "apps/run/run_options.hpp"
+#include "apps/run/run_command.hpp"
 #include "apps/tasks/fingerprint.hpp"
-#include "apps/tasks/manifest_fields.hpp"
 #include "apps/tasks/planned_drive.hpp"
 #include "core/edit_distance.hpp"
 #include "io/files/errors.hpp"

@@ -1,29 +1,25 @@
 #include "apps/tasks/task_performer.hpp"
 
 #include <algorithm>
+#include <csignal>
+#include <cstring>
 #include <system_error>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "apps/console/child_process.hpp"
 #include "apps/tasks/fingerprint.hpp"
-#include "apps/tasks/host_name.hpp"
-#include "apps/tasks/task_steps.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Makes a folder. Throws OutputError naming it.
-void makeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw OutputError(folder.string() + ": cannot be made: " + error.message());
-}
 
 std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
@@ -117,6 +113,41 @@ std::optional<TaskRecord> recordOfSame(const Task& task, const fs::path& folder)
   }
 }
 
+using namespace std::chrono_literals;
+
+constexpr auto kLook = 100ms;    // between two looks at whether to stop
+constexpr auto kPatience = 20s;  // for a step that was told to end, to write what it has
+
+std::string sentenceOn(const std::string& step, const ChildEnd& end) {
+  if (end.signal == SIGKILL) return step + " was killed (signal 9), by somebody or for want of memory";
+  if (end.signal != 0) return fmt::format("{} was ended by signal {} ({})", step, end.signal, ::strsignal(end.signal));
+  return fmt::format("{} ended with exit code {}", step, end.exit_code);
+}
+
+/// Tells a step to end, and waits for it. Kills it if it does not end.
+ChildEnd endOf(ChildProcess& child) {
+  child.signal(SIGTERM);
+  if (const auto end = child.wait(kPatience)) return *end;
+  child.signal(SIGKILL);
+  while (true)
+    if (const auto end = child.wait(kPatience)) return *end;
+}
+
+/// The last lines of a text file, without what would disturb a terminal.
+std::vector<std::string> lastLines(const fs::path& file) {
+  constexpr std::size_t kMost = 8, kMostCharacters = 300;
+  std::vector<std::string> last;
+  try {
+    for (const TextLine& line : readLines(file)) {
+      last.push_back(printable(line.text, kMostCharacters));
+      if (last.size() > kMost) last.erase(last.begin());
+    }
+  } catch (const InputError&) {
+    return {};
+  }
+  return last;
+}
+
 }  // namespace
 
 std::optional<TaskRecord> performTask(const Task& task, const Workplace& workplace) {
@@ -169,18 +200,34 @@ std::optional<TaskRecord> failedRecord(const Task& task, const BatchFolder& fold
   return recordOfSame(task, folder.failure(task.name));
 }
 
-std::vector<std::string> lastLines(const fs::path& file, std::size_t most) {
-  constexpr std::size_t kMostCharacters = 300;
-  std::vector<std::string> last;
-  try {
-    for (const TextLine& line : readLines(file)) {
-      last.push_back(printable(line.text, kMostCharacters));
-      if (last.size() > most) last.erase(last.begin());
-    }
-  } catch (const InputError&) {
-    return {};
-  }
-  return last;
+TaskSteps::TaskSteps(const Workplace& workplace, std::filesystem::path folder)
+    : workplace_(workplace), folder_(std::move(folder)) {}
+
+bool TaskSteps::outOfTime() const { return workplace_.limit.count() > 0 && Clock::now() - start_ > workplace_.limit; }
+
+bool TaskSteps::run(const std::string& step, const std::vector<std::string>& words) {
+  ChildCommand command{.words = {workplace_.program.string(), step},
+                       .folder = folder_,
+                       .log = logIn(folder_),
+                       .processors = workplace_.processors};
+  command.words.insert(command.words.end(), words.begin(), words.end());
+  ChildProcess child(command);
+  std::optional<ChildEnd> end;
+  bool late = false;
+  while (!(end = child.wait(kLook)) && !stopped() && !(late = outOfTime())) continue;
+  if (!end) end = endOf(child);
+  cpu_s_ += end->cpu_s;
+  peak_memory_bytes_ = std::max(peak_memory_bytes_, end->peak_memory_bytes);
+  if (end->good()) return true;
+  if (!stopped())
+    failure_ = TaskFailure{
+        .step = step,
+        .message = late ? fmt::format("{} took longer than the {} s of --time", step, workplace_.limit.count())
+                        : sentenceOn(step, *end),
+        .exit_code = end->exit_code,
+        .signal = end->signal,
+        .last_lines = lastLines(logIn(folder_))};
+  return false;
 }
 
 }  // namespace motorcade

@@ -1,9 +1,17 @@
 #include "apps/tasks/task_record.hpp"
 
+#include <unistd.h>
+
 #include "apps/tasks/task_json.hpp"
 #include "io/files/line_file.hpp"
 
 namespace motorcade {
+
+std::string hostName() {
+  char name[256] = {};
+  return ::gethostname(name, sizeof(name) - 1) == 0 ? name : "unknown";
+}
+
 namespace {
 
 Json jsonOf(const TaskFailure& failure) {

@@ -8,6 +8,9 @@
 
 namespace motorcade {
 
+/// Name of this machine, as others know it.
+std::string hostName();
+
 /// Reason why an attempt at a task failed.
 struct TaskFailure {
   std::string step{};     // render, run, evaluate, or the preparation of them

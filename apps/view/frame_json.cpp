@@ -1,5 +1,3 @@
-#include "apps/view/frame_json.hpp"
-
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,6 +5,7 @@
 
 #include "apps/draw/palette.hpp"
 #include "apps/latency/latency_report.hpp"
+#include "apps/view/page_json.hpp"
 #include "core/object_place.hpp"
 #include "io/files/json_text.hpp"
 #include "io/results/object_row.hpp"

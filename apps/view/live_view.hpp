@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/pipeline/run_listener.hpp"
+#include "apps/pipeline/pipeline_result.hpp"
 #include "apps/view/page_server.hpp"
 #include "apps/view/replay_gate.hpp"
 #include "apps/view/sequence_pictures.hpp"

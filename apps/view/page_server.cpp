@@ -1,6 +1,5 @@
 #include "apps/view/page_server.hpp"
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -13,8 +12,6 @@
 #include <sys/resource.h>
 
 #include "apps/console/log.hpp"
-#include "apps/view/assets.hpp"
-#include "apps/view/request_guard.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {

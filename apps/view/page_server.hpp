@@ -1,13 +1,23 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 
-#include "apps/view/listen_address.hpp"
 #include "apps/view/page_source.hpp"
+#include "apps/view/request_guard.hpp"
 #include "apps/view/viewers.hpp"
 
 namespace motorcade {
+
+/// A file of the page, compiled into the program.
+struct Asset {
+  const char *path, *type;
+  std::string_view content;
+};
+
+std::span<const Asset> assets();
 
 /// Serves the page of a run (docs/view.md) on threads of its own, from memory alone. Source and viewers must outlive
 /// it. Its threads give way to the pipeline's.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/view/frame_json.hpp"
+#include "apps/view/page_json.hpp"
 #include "apps/view/run_counts.hpp"
 
 namespace motorcade {

@@ -1,16 +1,45 @@
 #include "apps/view/recorded_view.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <semaphore>
+#include <string_view>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
+#include "apps/console/stop_signals.hpp"
 #include "apps/latency/latency_report.hpp"
 #include "apps/recorded/recorded_run.hpp"
-#include "apps/view/recorded_files.hpp"
-#include "apps/view/run_overview.hpp"
+#include "apps/view/page_json.hpp"
+#include "apps/view/page_server.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/json_text.hpp"
+#include "io/files/text_file.hpp"
 
 namespace motorcade {
 namespace {
+
+namespace fs = std::filesystem;
+using FileJson = nlohmann::json;
+
+std::vector<std::string> fieldsOf(std::string_view line) {
+  std::vector<std::string> fields;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    fields.emplace_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+/// The number in the column of that name; 0 where there is none.
+double numberIn(const std::vector<std::string>& header, const std::vector<std::string>& fields,
+                const std::string& name) {
+  const auto column = std::ranges::find(header, name) - header.begin();
+  return column < std::ssize(fields) ? std::strtod(fields[static_cast<std::size_t>(column)].c_str(), nullptr) : 0;
+}
 
 double rateOf(const std::vector<Timestamp>& stamps) {
   constexpr double kUsualRate_hz = 10;
@@ -43,6 +72,49 @@ std::optional<RunTruth> moved(std::optional<RunTruth> truth, const SE3& T) {
 }
 
 }  // namespace
+
+std::map<std::int64_t, ShownTiming> readTimings(const fs::path& run_folder) {
+  std::map<std::int64_t, ShownTiming> timings;
+  const auto lines = readLines(run_folder / "frames.csv", LastLine::kDropIfCut);
+  if (lines.empty()) return timings;
+  const auto header = fieldsOf(lines.front().text);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto fields = fieldsOf(lines[i].text);
+    const auto number = [&](const std::string& name) { return numberIn(header, fields, name); };
+    ShownTiming timing{.latency_ms = number("latency_ms"), .decode_ms = number("decode_ms")};
+    for (std::size_t stage = 0; stage < kStageCount; ++stage)
+      timing.stages_ms[stage] = number(std::string(kStageKeys[stage]) + "_ms");
+    timings[static_cast<std::int64_t>(number("frame"))] = timing;
+  }
+  return timings;
+}
+
+std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const fs::path& run_folder) {
+  std::map<std::int64_t, std::vector<std::string>> outlines;
+  const fs::path file = run_folder / "outlines.jsonl";
+  if (!fs::exists(file)) return outlines;
+  constexpr std::string_view kStart = R"({"frame":)";
+  for (TextLine& line : readLines(file, LastLine::kDropIfCut))
+    if (line.text.starts_with(kStart))
+      outlines[std::strtoll(line.text.c_str() + kStart.size(), nullptr, 10)].push_back(std::move(line.text));
+  return outlines;
+}
+
+ShownOutline outlineOf(const std::string& line) {
+  const FileJson json = jsonOrDiscarded(line);
+  if (!json.is_object() || !json.contains("track_id") || !json.contains("polygons")) return {};
+  ShownOutline outline;
+  try {
+    outline.track = {json["track_id"].get<std::int64_t>()};
+    for (const FileJson& polygon : json["polygons"]) {
+      Polygon& corners = outline.polygons.emplace_back();
+      for (const FileJson& corner : polygon) corners.emplace_back(corner.at(0).get<int>(), corner.at(1).get<int>());
+    }
+  } catch (const FileJson::exception&) {
+    return {};
+  }
+  return outline;
+}
 
 SE3 worldOfOther(const RunFolder& run, const RunFolder& other) {
   const std::vector<SE3>&ours = fullerTrajectories(run).camera, &theirs = fullerTrajectories(other).camera;
@@ -147,6 +219,28 @@ std::string RecordedView::framesJson(std::int64_t from, std::size_t count) const
 
 std::string RecordedView::frameJson(std::int64_t frame) const {
   return has(frame) ? toJson(shown(frame, FrameDetail::kAll), run_.first_stamp) : "";
+}
+
+int runView(const ViewOptions& options) {
+  const ListenAddress address = parseListenAddress(options.address, "--view");
+  const RunFolder run = readRunFolder(options.run);
+  const Sequence sequence = openSequenceOf(run, {options.sequence, options.fps_hz});
+  RecordedView view(run, sequence);
+  if (!options.against.empty()) {
+    const RunFolder other = readRunFolder(options.against);
+    requireSameDrive(other, sequence);
+    view.compareWith(std::make_unique<RecordedView>(other, sequence, worldOfOther(run, other)));
+  }
+  StopSignals signals;
+  Viewers viewers;
+  const PageServer server(address, view, viewers);
+  viewers.publish(std::make_shared<const std::string>(eventJson(view.snapshot(), "")));
+  std::printf("%s  (end with Ctrl-C)\n", server.url().c_str());
+  std::fflush(stdout);
+  std::binary_semaphore asked_to_end(0);
+  const auto watch = signals.watch([&asked_to_end] { asked_to_end.release(); });
+  asked_to_end.acquire();
+  return 0;
 }
 
 }  // namespace motorcade

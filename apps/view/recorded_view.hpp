@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,8 +12,18 @@
 #include "apps/view/page_source.hpp"
 #include "apps/view/run_truth.hpp"
 #include "apps/view/sequence_pictures.hpp"
+#include "apps/view/shown_frame.hpp"
 
 namespace motorcade {
+
+// Further files of a run folder, by frame.
+
+/// Reads `frames.csv` by the names of its columns. Lines that a killed run cut off are left out.
+std::map<std::int64_t, ShownTiming> readTimings(const std::filesystem::path& run_folder);
+/// The lines of `outlines.jsonl`; none where the run did not write them.
+std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const std::filesystem::path& run_folder);
+/// The outline of a line; a damaged line has no polygons. Does not throw.
+ShownOutline outlineOf(const std::string& line);
 
 /// A run that is over, for the page.
 class RecordedView : public PageSource {
@@ -56,5 +67,17 @@ class RecordedView : public PageSource {
 /// The transform that brings another run of the same drive into the world of the first one, by their first common
 /// frame. Throws InputError, naming both, if they have none.
 SE3 worldOfOther(const RunFolder& run, const RunFolder& other);
+
+/// The command line of `motorcade view`.
+struct ViewOptions {
+  std::filesystem::path run;
+  std::filesystem::path against;   // another run of the same drive; empty for none
+  std::filesystem::path sequence;  // empty for the run's own
+  std::optional<double> fps_hz;    // where the sequence has no times
+  std::string address;             // ADDR:PORT
+};
+
+/// Shows a run that is over until SIGINT or SIGTERM. Returns the exit code.
+int runView(const ViewOptions& options);
 
 }  // namespace motorcade

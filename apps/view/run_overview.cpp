@@ -1,5 +1,3 @@
-#include "apps/view/run_overview.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/latency/latency_report.hpp"
-#include "apps/view/frame_json.hpp"
+#include "apps/view/page_json.hpp"
 #include "io/files/json_text.hpp"
 #include "io/results/object_row.hpp"
 

@@ -1,6 +1,5 @@
 #include "apps/view/viewers.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace motorcade {

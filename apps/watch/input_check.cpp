@@ -4,9 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <utility>
 
-#include "apps/watch/median.hpp"
 #include "frontend/image/grain.hpp"
 #include "frontend/image/image_pyramid.hpp"
 

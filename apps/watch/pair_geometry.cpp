@@ -1,12 +1,9 @@
 #include "apps/watch/pair_geometry.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Cholesky>
-
-#include "apps/watch/median.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -8,6 +10,14 @@
 #include "core/stereo_camera.hpp"
 
 namespace motorcade {
+
+/// The median, the upper one of two in the middle; 0 of none.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 /// Causes of row differences in a pair, to first order. x, y are the left pixel's normalized coordinates, d is the
 /// disparity and x_r = x - d / f. The row in the right image less that in the left one is

@@ -4,7 +4,7 @@
 #include <bit>
 #include <new>
 
-#include "core/pages.hpp"
+#include "core/object_pool.hpp"
 
 namespace motorcade {
 namespace {

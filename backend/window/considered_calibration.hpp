@@ -3,9 +3,9 @@
 #include <map>
 #include <optional>
 
-#include "core/calibration_errors.hpp"
 #include "core/ids.hpp"
 #include "core/se3.hpp"
+#include "core/stereo_camera.hpp"
 
 namespace motorcade {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "backend/solver/incremental_solver.hpp"
-#include "core/calibration_errors.hpp"
 #include "core/parameters.hpp"
+#include "core/stereo_camera.hpp"
 
 namespace motorcade {
 

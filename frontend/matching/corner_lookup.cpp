@@ -9,7 +9,6 @@
 #include "core/instruction_set.hpp"
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/matching/corner_search.hpp"
-#include "frontend/matching/lesser.hpp"
 
 #define HWY_TARGET_INCLUDE "frontend/matching/corner_lookup.cpp"
 #include <hwy/foreach_target.h>

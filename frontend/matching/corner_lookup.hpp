@@ -13,6 +13,10 @@
 /// Guesses of where a point of the previous image may have gone, from which its alignment can start.
 namespace motorcade {
 
+/// Minimum and maximum by value: the standard library's, which take references, become branches.
+inline std::int64_t lesser(std::int64_t a, std::int64_t b) { return a < b ? a : b; }
+inline std::int64_t greater(std::int64_t a, std::int64_t b) { return a < b ? b : a; }
+
 struct Shift {
   float du_px = 0, dv_px = 0;
 };

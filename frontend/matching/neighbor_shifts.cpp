@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-#include "frontend/matching/lesser.hpp"
+#include "frontend/matching/corner_lookup.hpp"
 
 namespace motorcade {
 namespace {

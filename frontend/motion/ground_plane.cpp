@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 
 #include "core/elementary.hpp"
-#include "frontend/motion/plane_support.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,9 +10,18 @@
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
-#include "frontend/motion/plane_support.hpp"
 
 namespace motorcade {
+
+/// A point that may lie on the road.
+struct LowPoint {
+  Eigen::Vector3d p_cam;
+  double tolerance_m;  // of its height above the plane
+};
+
+/// Index of the plane with most support, the first of several. A point near a plane supports it by a truncated
+/// quadratic; points below speak against it.
+std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points);
 
 /// A triangulated point, as far as the road is concerned.
 struct GroundCandidate {

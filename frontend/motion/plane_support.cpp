@@ -1,9 +1,8 @@
-#include "frontend/motion/plane_support.hpp"
-
 #include <algorithm>
 #include <vector>
 
 #include "core/instruction_set.hpp"
+#include "frontend/motion/ground_plane.hpp"
 
 #define HWY_TARGET_INCLUDE "frontend/motion/plane_support.cpp"
 #include <hwy/foreach_target.h>

@@ -1,12 +1,22 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 
 namespace motorcade {
+
+/// Connected components of the Delaunay graph over image points, without the edges that `belong_together` denies. Each
+/// is ordered by index, and they are ordered by their first index. Points at the same pixel belong together without
+/// being asked.
+std::vector<std::vector<int>> cutDelaunayComponents(std::span<const Eigen::Vector2d> points_px,
+                                                    const std::function<bool(int, int)>& belong_together);
 
 /// Splits the scene into moving, static and unknown parts: connected components of the Delaunay graph over the image
 /// points. An edge is cut where the scene flow of its ends differs by more than their uncertainty allows, or where they
@@ -48,5 +58,12 @@ class MotionSegmenter {
 };
 
 std::vector<Parameter> parametersOf(MotionSegmenter::Params& params);
+
+/// Splits vehicles side by side at the same speed, which are one component as the scene flow does not part them. Cuts
+/// `members`, points of a moving `component`, at the widest gap across the travel while the pieces are wider than one
+/// vehicle, `vehicle_width_m` plus their depth noise. Each piece has the component's velocity and its own centroid. A
+/// component of one vehicle is returned as one piece.
+std::vector<MotionComponent> splitAbreast(const MotionComponent& component, const std::vector<int>& members,
+                                          const SceneMotion& scene, double vehicle_width_m);
 
 }  // namespace motorcade

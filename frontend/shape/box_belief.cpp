@@ -9,7 +9,7 @@
 
 #include "core/decompositions.hpp"
 #include "core/elementary.hpp"
-#include "frontend/shape/kind_prior.hpp"
+#include "frontend/shape/kind_belief.hpp"
 
 namespace motorcade {
 namespace {

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "core/instruction_set.hpp"
-#include "frontend/shape/parabola.hpp"
 
 #define HWY_TARGET_INCLUDE "frontend/shape/dense_disparity.cpp"
 #include <hwy/foreach_target.h>

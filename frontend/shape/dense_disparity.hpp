@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/image.hpp"
@@ -8,6 +9,12 @@
 #include "frontend/shape/path_costs.hpp"
 
 namespace motorcade {
+
+/// Place of the least value of a parabola through three neighboring values, in -1/2 ... 1/2.
+inline float parabolaOffset(int before, int least, int after) {
+  const int curvature = before + after - 2 * least;
+  return curvature > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(curvature) : 0.0F;
+}
 
 /// Disparities of every pixel of a window [px of the images given]; `kNone` where the two images do not agree on one.
 struct DisparityMap {
@@ -51,5 +58,9 @@ class DenseDisparity {
   std::vector<std::uint8_t> beyond_;       // per column: all bits set where the window has ended
   std::vector<std::uint8_t> best_, best_of_right_;
 };
+
+/// Refines the disparities of some cells in the same images at `scale` times their size, a power of two. Each is
+/// searched anew within a pixel or two of what it is there. Where nothing fits best, it stays.
+void refineDisparities(const Image& left, const Image& right, int scale, std::span<const int> cells, DisparityMap& map);
 
 }  // namespace motorcade

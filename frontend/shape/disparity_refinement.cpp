@@ -1,5 +1,3 @@
-#include "frontend/shape/disparity_refinement.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +6,7 @@
 
 #include "core/instruction_set.hpp"
 #include "frontend/image/window_differences.hpp"
-#include "frontend/shape/parabola.hpp"
+#include "frontend/shape/dense_disparity.hpp"
 
 #define HWY_TARGET_INCLUDE "frontend/shape/disparity_refinement.cpp"
 #include <hwy/foreach_target.h>

@@ -1,10 +1,35 @@
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Geometry>
+
 #include "core/messages.hpp"
+#include "core/stereo_camera.hpp"
 #include "frontend/shape/existence.hpp"
 #include "frontend/shape/outline.hpp"
 
 namespace motorcade {
+
+/// Objects that were known before the viewed one, on which its points may lie instead. Some are beside it; others were
+/// lost and would be here by now. A lost one that goes the same way does not count: the viewed object may be it.
+class OtherBodies {
+ public:
+  /// `view.well_before` is known and outlives this.
+  OtherBodies(const ObjectView& view, const StereoCamera& camera);
+
+  /// The earlier view for points on the object whose cuboid, grown by `margin_m`, holds a point; null if none does. Its
+  /// `T_before_cam` carries the point along with that object instead of leaving it at rest.
+  const ObjectView::Before* around(const Eigen::Vector3d& p_cam, double margin_m) const;
+
+ private:
+  struct Body {
+    Eigen::AlignedBox3d cuboid;
+    SE3 T_body_cam;
+    ObjectView::Before before;
+  };
+  std::vector<Body> bodies_;
+};
 
 /// Tells whether the image around an object's followed points moved with the body since an earlier frame, or rested.
 /// Each point asks the surface around it, densely. That the point itself was followed does not count: a wrong match on

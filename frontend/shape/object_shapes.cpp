@@ -8,9 +8,9 @@
 #include "core/elementary.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/shape/face_measurement.hpp"
-#include "frontend/shape/in_view.hpp"
 #include "frontend/shape/kind_belief.hpp"
 #include "frontend/shape/motion_verdict.hpp"
+#include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline_completion.hpp"
 
 namespace motorcade {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/elementary.hpp"
+#include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/search_by_projection.hpp"
 #include "frontend/tracking/small_body.hpp"
-#include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
 namespace {

@@ -10,15 +10,15 @@
 #include <Eigen/LU>
 
 #include "frontend/motion/shared_velocity_error.hpp"
+#include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/see_through.hpp"
 #include "frontend/tracking/small_body.hpp"
-#include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
 namespace {
 
-constexpr double kSurely = 3;          // standard deviations of a walk, which is confirmed by as many
-constexpr double kNotStaticChi2 = 16;  // by which moving explains better what was seen than resting: 4 sigma
+constexpr double kSurely = 3;                // standard deviations of a walk, which is confirmed by as many
+constexpr double kWalkerNotStaticChi2 = 16;  // by which moving explains better what was seen than resting: 4 sigma
 
 double medianDisparity_px(const std::vector<int>& points, const SceneMotion& scene) {
   std::vector<const ScenePoint*> seen;
@@ -87,7 +87,7 @@ std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const Candidat
   const double disparity_px = candidate.disparity_px;
   if (!endsWhereItsBodyDoes(region, disparity_px, scene)) return std::nullopt;
   const auto seen = flow_of_(region, disparity_px, scene, T_world_cam);
-  if (!seen || seen->flow.static_chi2 - seen->flow.moving_chi2 < kNotStaticChi2) return std::nullopt;
+  if (!seen || seen->flow.static_chi2 - seen->flow.moving_chi2 < kWalkerNotStaticChi2) return std::nullopt;
   Mover mover{.component = {}, .frames = seen->flow.observations, .duration_s = seen->duration_s};
   MotionComponent& component = mover.component;
   for (const int i : candidate.points)

@@ -5,7 +5,6 @@
 
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
-#include "frontend/tracking/instance_regions.hpp"
 #include "frontend/tracking/look_back.hpp"
 #include "frontend/tracking/region_flow.hpp"
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/decompositions.hpp"
+#include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/small_body.hpp"
-#include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
 namespace {

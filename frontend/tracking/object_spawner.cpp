@@ -5,10 +5,9 @@
 #include <Eigen/LU>
 
 #include "frontend/motion/shared_velocity_error.hpp"
-#include "frontend/segmentation/vehicles_abreast.hpp"
+#include "frontend/segmentation/motion_segmenter.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/small_body.hpp"
-#include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "core/elementary.hpp"
+#include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/see_through.hpp"
 #include "frontend/tracking/small_body.hpp"
-#include "frontend/tracking/vehicle_size.hpp"
 
 namespace motorcade {
 namespace {

@@ -1,19 +1,33 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "core/instance_labels.hpp"
+#include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/image/region_template.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/motion/point_track.hpp"
 #include "frontend/motion/scene_flow.hpp"
-#include "frontend/tracking/instance_regions.hpp"
 #include "frontend/tracking/look_back.hpp"
 
 namespace motorcade {
+
+/// Place of an instance label in the left image.
+struct InstanceRegion {
+  std::uint16_t label;
+  Box box;
+};
+
+/// Upper part of a region, which of a person is trunk and head: legs swing.
+Box upperPart(const Box& region);
+
+/// Region of each label, ordered by label. Takes one look at each pixel.
+std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels);
 
 /// Scene flow of what an instance label shows as a whole. It is looked for in the frames before by its brightness in
 /// both images. A point at rest and one that moves are then fitted to where it was, as to any scene point.

@@ -11,9 +11,7 @@
 #include "io/files/errors.hpp"
 #include "io/files/text_file.hpp"
 #include "io/layouts/given_cameras.hpp"
-#include "io/layouts/sample_use.hpp"
 #include "io/messages/camera_info_message.hpp"
-#include "io/messages/image_topics.hpp"
 
 namespace motorcade {
 namespace {

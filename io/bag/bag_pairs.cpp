@@ -7,7 +7,7 @@
 
 #include "io/files/errors.hpp"
 #include "io/files/text_file.hpp"
-#include "io/messages/image_topics.hpp"
+#include "io/messages/camera_info_message.hpp"
 
 namespace motorcade {
 

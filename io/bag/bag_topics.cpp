@@ -8,7 +8,7 @@
 
 #include "io/bag/sensor_messages.hpp"
 #include "io/files/errors.hpp"
-#include "io/files/shell_words.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/text_file.hpp"
 
 namespace motorcade {

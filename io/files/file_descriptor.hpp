@@ -35,4 +35,20 @@ InputFile openInput(const std::filesystem::path& file);
 /// previous file goes on reading that. Anything but a regular file or a link is refused. Throws OutputError.
 FileDescriptor createOutput(const std::filesystem::path& file);
 
+/// Makes a folder, with those above it, unless it is there. Throws OutputError.
+void makeFolder(const std::filesystem::path& folder);
+
+/// Keeps a folder for one writer. A second lock, of this process or another, fails while the first one lives. The lock
+/// ends with its process, however that ends. Throws OutputError.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  /// Fails when the folder was removed or renamed, or another one has its name.
+  void check() const;
+
+ private:
+  std::filesystem::path folder_;
+  FileDescriptor descriptor_;
+};
+
 }  // namespace motorcade

@@ -13,6 +13,14 @@
 /// The interface of `image_file` to each format, and functions that the formats share.
 namespace motorcade {
 
+// Files that are not read as images: what they are, and how to convert them.
+
+/// A sentence with a command that converts the images of the file's folder to gray ones that are read.
+std::string conversionOf(const std::filesystem::path& file);
+
+/// Throws InputError that names the content of a file by its first bytes.
+[[noreturn]] void failForeign(std::string_view bytes, const std::filesystem::path& file);
+
 /// Reads one format from the bytes of a whole file; `file` is for messages. Throws InputError on a damaged image.
 struct ImageCodec {
   ImageFormat format;

@@ -8,7 +8,6 @@
 
 #include "io/files/errors.hpp"
 #include "io/files/file_descriptor.hpp"
-#include "io/images/foreign_image.hpp"
 #include "io/images/image_codec.hpp"
 
 namespace motorcade {

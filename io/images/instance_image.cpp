@@ -1,5 +1,3 @@
-#include "io/images/instance_image.hpp"
-
 #include <algorithm>
 #include <array>
 #include <csetjmp>

@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/ids.hpp"
 #include "core/messages.hpp"
 #include "io/images/image_file.hpp"
 
+/// Images with one number for the pixels of one body, 0 for the background: masks that a run writes, and instances. In
+/// true masks the number is that of the label plus one.
 namespace motorcade {
 
 /// The folder of masks within a run folder.
@@ -26,5 +29,15 @@ TrackId trackOfMask(std::uint16_t value);
 std::filesystem::path maskFile(const std::filesystem::path& folder, FrameId frame);
 /// Does a file have such a name?
 bool isMaskFile(const std::filesystem::path& file);
+
+/// The file of a frame's instances in their folder: NNNNNN.png of rendered drives, instancegt_NNNNN.png of Virtual
+/// KITTI 2.
+std::filesystem::path instanceFile(const std::filesystem::path& folder, FrameId frame);
+
+/// Does a file have such a name?
+bool isInstanceFile(const std::filesystem::path& file);
+
+/// Values of a gray PNG, or indices of one with a palette. Throws InputError naming the file.
+Gray16Image readInstances(const std::filesystem::path& file);
 
 }  // namespace motorcade

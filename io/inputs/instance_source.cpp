@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "io/files/errors.hpp"
-#include "io/images/instance_image.hpp"
+#include "io/images/mask_image.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,15 +8,13 @@
 #include <utility>
 
 #include "io/files/errors.hpp"
-#include "io/files/natural_order.hpp"
+#include "io/files/file_names.hpp"
 #include "io/images/image_file.hpp"
 #include "io/layouts/given_cameras.hpp"
-#include "io/layouts/sample_use.hpp"
 #include "io/layouts/unsupported.hpp"
 #include "io/rig/rectification.hpp"
 #include "io/rig/rig_search.hpp"
 #include "io/sequence/frame_lines.hpp"
-#include "io/sequence/numbering.hpp"
 #include "io/sequence/pairing.hpp"
 #include "io/sequence/timestamps.hpp"
 

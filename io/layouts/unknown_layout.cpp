@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/files/errors.hpp"
-#include "io/files/natural_order.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/text_file.hpp"
 #include "io/layouts/layout_parts.hpp"
 #include "io/layouts/unsupported.hpp"

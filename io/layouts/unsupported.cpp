@@ -10,8 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files/natural_order.hpp"
-#include "io/files/shell_words.hpp"
+#include "io/files/file_names.hpp"
 #include "io/images/image_file.hpp"
 #include "io/sequence/image_names.hpp"
 

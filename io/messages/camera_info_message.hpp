@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/rig/rectification.hpp"
@@ -34,5 +35,14 @@ struct CameraInfoPair {
 /// sent, by `rectified`, use P alone. `Rig::rectified` is set where nothing is left to be done. Throws InputError
 /// naming the message.
 Rig rigOf(const CameraInfoPair& infos, bool rectified);
+
+// ROS' conventions for the names of a camera's topics.
+
+/// True for images that were rectified before they were sent: `image_rect`, `image_rect_color`, ..., also compressed.
+/// Their camera_info still describes the raw images.
+bool isRectifiedTopic(std::string_view image_topic);
+
+/// The camera_info beside an image topic: `/left/camera_info` of `/left/image_raw` and `/left/image_raw/compressed`.
+std::string cameraInfoTopicOf(std::string_view image_topic);
 
 }  // namespace motorcade

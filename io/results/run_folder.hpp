@@ -7,7 +7,7 @@
 
 #include "core/frame_timing.hpp"
 #include "core/messages.hpp"
-#include "io/files/folder_lock.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/files/line_file.hpp"
 #include "io/results/frame_table.hpp"
 #include "io/results/trace_file.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "io/files/text_file.hpp"
-#include "io/rig/known_forms.hpp"
 #include "io/rig/rig_readers.hpp"
+#include "io/rig/yaml_file.hpp"
 
 namespace motorcade {
 namespace {

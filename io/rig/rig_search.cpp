@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "io/files/shell_words.hpp"
+#include "io/files/file_names.hpp"
 #include "io/rig/rig_file.hpp"
 #include "io/rig/rig_readers.hpp"
 

@@ -8,7 +8,17 @@
 #include <string_view>
 #include <vector>
 
+#include "io/rig/yaml_module.hpp"
+
 namespace motorcade {
+
+/// The parts of an XML text as OpenCV writes it: a leaf of several words is a list, and so are elements named `_`.
+/// The root element's own name counts for nothing.
+YamlAnswer parsedXml(const std::string& text);
+
+/// Throws InputError for a calibration of a form that is known but not read. The message has the name of the form and
+/// what to give in its place.
+void throwKnownForm(const std::filesystem::path& file, std::string_view text);
 
 struct YamlNode;
 

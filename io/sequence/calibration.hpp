@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include "core/calibration_errors.hpp"
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
 #include "io/images/image_file.hpp"

@@ -5,7 +5,7 @@
 
 #include "io/files/errors.hpp"
 #include "io/files/text_file.hpp"
-#include "io/rig/known_forms.hpp"
+#include "io/rig/yaml_file.hpp"
 
 namespace motorcade {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "io/files/errors.hpp"
-#include "io/sequence/numbering.hpp"
+#include "io/sequence/pairing.hpp"
 #include "io/sequence/pose_interpolation.hpp"
 
 namespace motorcade {

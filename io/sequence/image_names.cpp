@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "io/files/errors.hpp"
-#include "io/files/natural_order.hpp"
-#include "io/sequence/name_times.hpp"
+#include "io/files/file_names.hpp"
 
 namespace motorcade {
 namespace {

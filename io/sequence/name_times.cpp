@@ -1,11 +1,11 @@
-#include "io/sequence/name_times.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <functional>
 #include <limits>
 #include <string>
+
+#include "io/sequence/image_names.hpp"
 
 namespace motorcade {
 namespace {

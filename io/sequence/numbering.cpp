@@ -1,10 +1,10 @@
-#include "io/sequence/numbering.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
+
+#include "io/sequence/pairing.hpp"
 
 namespace motorcade {
 namespace {

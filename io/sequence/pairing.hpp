@@ -39,4 +39,12 @@ std::string namesOf(const std::vector<std::filesystem::path>& images);
 /// The most frequent difference of numbers that follow each other; 1 where there are none.
 std::int64_t usualStep(const std::vector<std::int64_t>& numbers);
 
+/// Puts pairs into a sequence, in the order of their numbers. Where most numbers have one step, a number that both
+/// sides lack becomes a frame without images, up to a hundred in a row. Longer gaps only take time. Times become the
+/// frames' stamps.
+void setPairs(Sequence& sequence, PairedImages paired);
+
+/// Removes the frames that both sides lack, when times that do not come from the numbers show that nothing is missing.
+void closeNumbers(Sequence& sequence);
+
 }  // namespace motorcade

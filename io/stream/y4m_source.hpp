@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -14,9 +15,14 @@
 #include "io/inputs/pair_source.hpp"
 #include "io/sequence/sequence.hpp"
 #include "io/stream/stereo_packing.hpp"
+#include "io/stream/y4m_header.hpp"
 #include "io/stream/y4m_stream.hpp"
 
 namespace motorcade {
+
+/// A stream's drive as known before its first pair: all but the frames and their times. A pipe brings no calibration:
+/// the user gives it. Throws InputError or UsageError.
+Sequence sequenceOfStream(const Y4mHeader& header, StereoPacking packing, const GivenCameras& given);
 
 /// The pairs of a YUV4MPEG2 stream, read and rectified on a thread of its own as they come. Either no pair is lost, and
 /// the stream's writer waits where pairs are taken too slowly. Or the writer waits at most as long as a pair takes to

@@ -9,14 +9,13 @@
 #include <Eigen/Geometry>
 
 #include "io/files/errors.hpp"
-#include "io/files/natural_order.hpp"
+#include "io/files/file_names.hpp"
 #include "io/files/text_file.hpp"
 #include "io/sequence/frame_lines.hpp"
 #include "io/sequence/pose_interpolation.hpp"
 #include "io/sequence/timestamps.hpp"
 #include "io/truth/stamped_poses.hpp"
 #include "io/truth/trajectory.hpp"
-#include "io/truth/velocity_path.hpp"
 #include "io/truth/virtual_kitti.hpp"
 
 namespace motorcade {

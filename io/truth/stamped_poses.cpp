@@ -11,7 +11,7 @@
 #include "io/files/errors.hpp"
 #include "io/files/text_file.hpp"
 #include "io/sequence/image_names.hpp"
-#include "io/truth/pose_form.hpp"
+#include "io/truth/trajectory.hpp"
 
 namespace motorcade {
 namespace {

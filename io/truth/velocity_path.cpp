@@ -1,5 +1,3 @@
-#include "io/truth/velocity_path.hpp"
-
 #include <cassert>
 #include <string>
 
@@ -7,6 +5,7 @@
 
 #include "io/files/errors.hpp"
 #include "io/sequence/timestamps.hpp"
+#include "io/truth/ground_truth.hpp"
 
 namespace motorcade {
 namespace {

@@ -23,12 +23,6 @@ inline constexpr std::size_t kFrames = MOTORCADE_RENDERED_FRAMES;
 inline const std::vector<std::string> kReproducible{"camera_online.txt", "camera_final.txt",   "camera_online.tum",
                                                     "camera_final.tum",  "objects_online.csv", "objects_final.csv"};
 
-inline std::string contentOf(const fs::path& file) {
-  std::ostringstream content;
-  content << std::ifstream(file, std::ios::binary).rdbuf();
-  return content.str();
-}
-
 /// Shell command that waits at most a minute until a file has more than `lines` lines.
 inline std::string waitForLines(const fs::path& file, std::size_t lines) {
   std::ostringstream wait;

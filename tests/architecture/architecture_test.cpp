@@ -179,7 +179,7 @@ TEST(Architecture, OpenCvAndYamlCppStayInModulesAndPrograms) {
     forEachInclude(folder, [&](const std::string& file, const std::string& included) {
       if (included.starts_with("opencv2/") || included.starts_with("yaml-cpp/")) files.insert(file);
     });
-  EXPECT_THAT(files, testing::ElementsAre("apps/console/versions.cpp", "frontend/features/sift_module.cpp",
+  EXPECT_THAT(files, testing::ElementsAre("apps/console/own_program.cpp", "frontend/features/sift_module.cpp",
                                           "io/results/outline_polygons.cpp", "io/rig/yaml_module.cpp"));
 }
 

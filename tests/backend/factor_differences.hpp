@@ -7,6 +7,7 @@
 #include "backend/graph/factor.hpp"
 #include "backend/graph/variable.hpp"
 #include "tests/backend/perturbation.hpp"
+#include "tests/support/numeric_jacobian.hpp"
 
 namespace motorcade::test {
 
@@ -26,17 +27,16 @@ inline Eigen::VectorXd residualAt(const JacobianFactor& factor, const std::vecto
 /// own axes (retract) or in the world's (displaced).
 inline Eigen::MatrixXd numericJacobian(const JacobianFactor& factor, const std::vector<Value>& values,
                                        Value (*move)(const Value&, const SmallVector&) = retract) {
-  constexpr double kStep = 1e-6;
   Eigen::MatrixXd J(factor.rows(), 0);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    for (int i = 0; i < dimension(values[k]); ++i) {
-      const SmallVector step = kStep * SmallVector::Unit(dimension(values[k]), i);
-      auto plus = values, minus = values;
-      plus[k] = move(values[k], step);
-      minus[k] = move(values[k], -step);
-      J.conservativeResize(Eigen::NoChange, J.cols() + 1);
-      J.col(J.cols() - 1) = (residualAt(factor, plus) - residualAt(factor, minus)) / (2 * kStep);
-    }
+    const auto residual = [&](const Eigen::VectorXd& step) {
+      auto moved = values;
+      moved[k] = move(values[k], step);
+      return residualAt(factor, moved);
+    };
+    const int columns = dimension(values[k]);
+    J.conservativeResize(Eigen::NoChange, J.cols() + columns);
+    J.rightCols(columns) = numericJacobian(residual, Eigen::VectorXd::Zero(columns).eval());
   }
   return J;
 }

@@ -1,5 +1,4 @@
 #include "apps/pipeline/configuration.hpp"
-#include "apps/pipeline/parameter_table.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "apps/tasks/manifest_fields.hpp"
+#include "apps/tasks/manifest.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;

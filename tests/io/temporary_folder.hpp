@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,11 @@
 #include <unistd.h>
 
 namespace motorcade::test {
+
+inline std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 /// A folder of its own for one test, removed with all its content at the end.
 class TemporaryFolder {
@@ -34,10 +40,7 @@ class TemporaryFolder {
     std::ofstream(file, std::ios::binary) << content;
     return file;
   }
-  std::string read(const std::filesystem::path& name) const {
-    std::ifstream in(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  }
+  std::string read(const std::filesystem::path& name) const { return contentOf(path_ / name); }
 
  private:
   std::filesystem::path path_;

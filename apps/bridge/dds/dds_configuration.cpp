@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -52,6 +55,28 @@ std::string attributeOf(const std::string& interface) {
   return fmt::format("name=\"{}\"", interface);
 }
 
+constexpr char kLoopbackDevice[] = "lo";
+
+std::optional<int> descriptorOf(const std::filesystem::path& name) {
+  const std::string text = name.filename().string();
+  int descriptor = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), descriptor);
+  return error == std::errc() ? std::optional(descriptor) : std::nullopt;
+}
+
+bool receivesAnywhere(int descriptor) {
+  int type = 0;
+  socklen_t size = sizeof(type);
+  if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) return false;
+  sockaddr_storage name{};
+  size = sizeof(name);
+  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&name), &size) != 0 || name.ss_family != AF_INET)
+    return false;
+  sockaddr_in address{};
+  std::memcpy(&address, &name, sizeof(address));
+  return address.sin_addr.s_addr == htonl(INADDR_ANY);
+}
+
 }  // namespace
 
 bool isLoopback(const DdsPlace& place) {
@@ -88,6 +113,16 @@ std::string ddsConfiguration(const DdsPlace& place) {
 
 std::string textOf(const DdsPlace& place) {
   return fmt::format("domain {} on {}", place.domain, isLoopback(place) ? kLoopback : place.interface);
+}
+
+bool bindSocketsToLoopback() {
+  bool bound = true;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const auto descriptor = descriptorOf(entry.path());
+    if (!descriptor || !receivesAnywhere(*descriptor)) continue;
+    bound &= ::setsockopt(*descriptor, SOL_SOCKET, SO_BINDTODEVICE, kLoopbackDevice, sizeof(kLoopbackDevice)) == 0;
+  }
+  return bound;
 }
 
 }  // namespace motorcade

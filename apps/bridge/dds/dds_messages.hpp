@@ -2,14 +2,17 @@
 
 #include <vector>
 
+#include <autoware_perception_msgs.h>
 #include <diagnostic_msgs.h>
 #include <geometry_msgs.h>
 #include <nav_msgs.h>
 #include <tf2_msgs.h>
+#include <vision_msgs.h>
 #include <visualization_msgs.h>
 
-#include "apps/bridge/messages/ros_diagnostics.hpp"
+#include "apps/bridge/messages/diagnostics.hpp"
 #include "apps/bridge/messages/ros_messages.hpp"
+#include "apps/bridge/messages/ros_objects.hpp"
 
 /// Views of messages in the types that idlc makes of apps/bridge/idl: strings and sequences are those of the message,
 /// which must outlive the view and is only read.
@@ -18,43 +21,32 @@ namespace motorcade {
 geometry_msgs_msg_dds__PoseStamped_ ddsView(const ros::PoseStamped& message);
 nav_msgs_msg_dds__Odometry_ ddsView(const ros::Odometry& message);
 
-class MarkerArrayView {
- public:
-  explicit MarkerArrayView(const ros::MarkerArray& message);
-  MarkerArrayView(const MarkerArrayView&) = delete;
-  MarkerArrayView& operator=(const MarkerArrayView&) = delete;
-  const visualization_msgs_msg_dds__MarkerArray_& array() const { return array_; }
+/// A message of items that have lists of parts, and what its sequences point to.
+template <class Message, class Item, class Part>
+struct DdsListView {
+  explicit DdsListView(std::size_t count) : parts(count) { items.reserve(count); }
+  DdsListView(DdsListView&&) = default;  // lists stay where they are
 
- private:
-  std::vector<std::vector<geometry_msgs_msg_dds__Point_>> points_;  // of each marker
-  std::vector<visualization_msgs_msg_dds__Marker_> markers_;
-  visualization_msgs_msg_dds__MarkerArray_ array_{};
+  std::vector<std::vector<Part>> parts;  // of each item
+  std::vector<Item> items{};
+  Message message{};
 };
 
-class DiagnosticArrayView {
- public:
-  explicit DiagnosticArrayView(const ros::DiagnosticArray& message);
-  DiagnosticArrayView(const DiagnosticArrayView&) = delete;
-  DiagnosticArrayView& operator=(const DiagnosticArrayView&) = delete;
-  const diagnostic_msgs_msg_dds__DiagnosticArray_& array() const { return array_; }
-
- private:
-  std::vector<std::vector<diagnostic_msgs_msg_dds__KeyValue_>> values_;  // of each status
-  std::vector<diagnostic_msgs_msg_dds__DiagnosticStatus_> status_;
-  diagnostic_msgs_msg_dds__DiagnosticArray_ array_{};
-};
-
-/// A message of one transform.
-class TfMessageView {
- public:
-  explicit TfMessageView(const ros::TransformStamped& message);
-  TfMessageView(const TfMessageView&) = delete;
-  TfMessageView& operator=(const TfMessageView&) = delete;
-  const tf2_msgs_msg_dds__TFMessage_& message() const { return message_; }
-
- private:
-  std::vector<geometry_msgs_msg_dds__TransformStamped_> transforms_;
-  tf2_msgs_msg_dds__TFMessage_ message_{};
-};
+using DdsMarkers = DdsListView<visualization_msgs_msg_dds__MarkerArray_, visualization_msgs_msg_dds__Marker_,
+                               geometry_msgs_msg_dds__Point_>;
+DdsMarkers ddsView(const ros::MarkerArray& message);
+using DdsDiagnostics = DdsListView<diagnostic_msgs_msg_dds__DiagnosticArray_,
+                                   diagnostic_msgs_msg_dds__DiagnosticStatus_, diagnostic_msgs_msg_dds__KeyValue_>;
+DdsDiagnostics ddsView(const ros::DiagnosticArray& message);
+using DdsTrackedObjects =
+    DdsListView<autoware_perception_msgs_msg_dds__TrackedObjects_, autoware_perception_msgs_msg_dds__TrackedObject_,
+                autoware_perception_msgs_msg_dds__ObjectClassification_>;
+DdsTrackedObjects ddsView(const ros::TrackedObjects& message);
+using DdsDetections = DdsListView<vision_msgs_msg_dds__Detection3DArray_, vision_msgs_msg_dds__Detection3D_,
+                                  vision_msgs_msg_dds__ObjectHypothesisWithPose_>;
+DdsDetections ddsView(const ros::Detection3DArray& message);
+/// A message of one transform, which has no parts.
+using DdsTransform = DdsListView<tf2_msgs_msg_dds__TFMessage_, geometry_msgs_msg_dds__TransformStamped_, char>;
+DdsTransform ddsView(const ros::TransformStamped& message);
 
 }  // namespace motorcade

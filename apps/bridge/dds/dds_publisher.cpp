@@ -1,17 +1,15 @@
 #include "apps/bridge/dds/dds_publisher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <thread>
-#include <utility>
 
 #include <dds/dds.h>
 #include <fmt/format.h>
 
 #include "apps/bridge/dds/dds_entity.hpp"
 #include "apps/bridge/dds/dds_messages.hpp"
-#include "apps/bridge/dds/dds_objects.hpp"
-#include "apps/bridge/dds/loopback_sockets.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {
@@ -33,31 +31,22 @@ DdsQos rosDefault() {
   return qos;
 }
 
-const dds_topic_descriptor_t& typeOf(Topic topic) {
-  switch (topic) {
-    case Topic::kPose:
-      return geometry_msgs_msg_dds__PoseStamped__desc;
-    case Topic::kOdometry:
-      return nav_msgs_msg_dds__Odometry__desc;
-    case Topic::kMarkers:
-      return visualization_msgs_msg_dds__MarkerArray__desc;
-    case Topic::kTrackedObjects:
-      return autoware_perception_msgs_msg_dds__TrackedObjects__desc;
-    case Topic::kDetections:
-      return vision_msgs_msg_dds__Detection3DArray__desc;
-    case Topic::kDiagnostics:
-      return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
-    case Topic::kTf:
-      break;
-  }
-  return tf2_msgs_msg_dds__TFMessage__desc;
-}
+/// In the order of Topic.
+const std::array kTypes{&geometry_msgs_msg_dds__PoseStamped__desc,
+                        &nav_msgs_msg_dds__Odometry__desc,
+                        &visualization_msgs_msg_dds__MarkerArray__desc,
+                        &autoware_perception_msgs_msg_dds__TrackedObjects__desc,
+                        &vision_msgs_msg_dds__Detection3DArray__desc,
+                        &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+                        &tf2_msgs_msg_dds__TFMessage__desc};
+static_assert(kTypes.size() == kTopicNames.size());
 
 /// One topic with its writer.
 class Writer {
  public:
   Writer(dds_entity_t participant, Topic topic)
-      : Writer(participant, typeOf(topic), kTopicNames.at(static_cast<std::size_t>(topic)).ros) {}
+      : Writer(participant, *kTypes.at(static_cast<std::size_t>(topic)),
+               kTopicNames.at(static_cast<std::size_t>(topic)).ros) {}
 
   void write(const void* message) {
     const bool acknowledged = dds_wait_for_acks(writer_.get(), 0) == DDS_RETCODE_OK;
@@ -113,7 +102,10 @@ struct DdsPublisher::Impl {
                     textOf(place)) {
     for (const Topic topic : topics) writers.try_emplace(topic, participant.get(), topic);
   }
-  void write(Topic topic, const void* message) { writers.at(topic).write(message); }
+  template <class Message>
+  void write(Topic topic, const Message& message) {
+    writers.at(topic).write(&message);
+  }
 
   DdsEntity domain;
   bool shielded;
@@ -146,29 +138,19 @@ bool DdsPublisher::waitForSubscribers(int count, std::chrono::milliseconds patie
 
 bool DdsPublisher::publishes(Topic topic) const { return impl_->writers.contains(topic); }
 
-void DdsPublisher::publish(const ros::PoseStamped& message) {
-  const auto view = ddsView(message);
-  impl_->write(Topic::kPose, &view);
-}
-void DdsPublisher::publish(const ros::Odometry& message) {
-  const auto view = ddsView(message);
-  impl_->write(Topic::kOdometry, &view);
-}
-void DdsPublisher::publish(const ros::MarkerArray& message) {
-  impl_->write(Topic::kMarkers, &MarkerArrayView(message).array());
-}
+void DdsPublisher::publish(const ros::PoseStamped& message) { impl_->write(Topic::kPose, ddsView(message)); }
+void DdsPublisher::publish(const ros::Odometry& message) { impl_->write(Topic::kOdometry, ddsView(message)); }
+void DdsPublisher::publish(const ros::MarkerArray& message) { impl_->write(Topic::kMarkers, ddsView(message).message); }
 void DdsPublisher::publish(const ros::TrackedObjects& message) {
-  impl_->write(Topic::kTrackedObjects, &TrackedObjectsView(message).message());
+  impl_->write(Topic::kTrackedObjects, ddsView(message).message);
 }
 void DdsPublisher::publish(const ros::Detection3DArray& message) {
-  impl_->write(Topic::kDetections, &Detection3DArrayView(message).array());
+  impl_->write(Topic::kDetections, ddsView(message).message);
 }
 void DdsPublisher::publish(const ros::DiagnosticArray& message) {
-  impl_->write(Topic::kDiagnostics, &DiagnosticArrayView(message).array());
+  impl_->write(Topic::kDiagnostics, ddsView(message).message);
 }
-void DdsPublisher::publish(const ros::TransformStamped& message) {
-  impl_->write(Topic::kTf, &TfMessageView(message).message());
-}
+void DdsPublisher::publish(const ros::TransformStamped& message) { impl_->write(Topic::kTf, ddsView(message).message); }
 
 std::vector<DdsPublisher::Counts> DdsPublisher::counts() const {
   std::vector<Counts> counts;

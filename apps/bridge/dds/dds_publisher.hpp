@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/bridge/dds/dds_configuration.hpp"
-#include "apps/bridge/messages/ros_diagnostics.hpp"
+#include "apps/bridge/messages/diagnostics.hpp"
 #include "apps/bridge/messages/ros_messages.hpp"
 #include "apps/bridge/messages/ros_objects.hpp"
 #include "apps/bridge/messages/topics.hpp"

@@ -5,11 +5,16 @@
 #include <vector>
 
 #include <geometry_msgs.h>
+#include <sensor_msgs.h>
 #include <std_msgs.h>
 
 #include "apps/bridge/messages/ros_messages.hpp"
+#include "io/messages/camera_info_message.hpp"
+#include "io/messages/image_message.hpp"
+#include "motorcade/motorcade.hpp"
 
-/// Parts of messages in the types that idlc makes of apps/bridge/idl. Strings and sequences are those of the arguments.
+/// Values of messages to and from the types that idlc makes of apps/bridge/idl. Strings, sequences and pixels stay
+/// those of the arguments.
 namespace motorcade {
 
 /// DDS has no constant types, but only reads a message that it writes.
@@ -34,5 +39,12 @@ geometry_msgs_msg_dds__TwistWithCovariance_ ddsTwist(const ros::Vector3& linear,
                                                      const ros::Covariance& covariance);
 geometry_msgs_msg_dds__AccelWithCovariance_ ddsAcceleration(const ros::Vector3& linear, const ros::Vector3& angular,
                                                             const ros::Covariance& covariance);
+
+ImageMessage imageMessageOf(const sensor_msgs_msg_dds__Image_& sample);
+CompressedImageMessage imageMessageOf(const sensor_msgs_msg_dds__CompressedImage_& sample);
+/// Keeps one coefficient more than a model can have, so that readers refuse the message, and drops the others.
+CameraInfoMessage cameraInfoMessageOf(const sensor_msgs_msg_dds__CameraInfo_& sample);
+/// The speed along the vehicle's x axis and the turn rate about z, with their deviations where the covariance has them.
+VehicleMotion vehicleMotionOf(const geometry_msgs_msg_dds__TwistWithCovarianceStamped_& sample);
 
 }  // namespace motorcade

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "apps/bridge/dds/dds_entity.hpp"
-#include "apps/bridge/dds/dds_images.hpp"
+#include "apps/bridge/dds/dds_values.hpp"
 
 namespace motorcade {
 namespace {

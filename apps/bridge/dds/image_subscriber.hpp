@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/bridge/dds/dds_configuration.hpp"
-#include "apps/bridge/messages/received_image.hpp"
+#include "apps/bridge/messages/pair_conversion.hpp"
 #include "io/messages/camera_info_message.hpp"
 #include "io/sequence/sequence.hpp"
 #include "motorcade/motorcade.hpp"

@@ -1,9 +1,31 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "apps/bridge/messages/ros_diagnostics.hpp"
+#include "apps/bridge/messages/ros_messages.hpp"
 #include "motorcade/motorcade.hpp"
+
+/// The values of diagnostic_msgs, and the tracker's state in them.
+namespace motorcade::ros {
+
+struct DiagnosticStatus {
+  enum class Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
+  struct KeyValue {
+    std::string key{}, value{};
+  };
+  Level level = Level::kOk;
+  std::string name{}, message{}, hardware_id{};
+  std::vector<KeyValue> values{};
+};
+
+struct DiagnosticArray {
+  Header header{};
+  std::vector<DiagnosticStatus> status{};
+};
+
+}  // namespace motorcade::ros
 
 namespace motorcade {
 

@@ -1,13 +1,9 @@
 #include "apps/bridge/messages/pair_conversion.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <variant>
 
 #include "io/images/sample_bits.hpp"
 #include "io/layouts/given_cameras.hpp"
-#include "io/layouts/sample_use.hpp"
-#include "io/messages/image_topics.hpp"
 #include "io/rig/rectification.hpp"
 
 namespace motorcade {

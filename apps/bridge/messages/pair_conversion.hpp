@@ -2,17 +2,31 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
-#include "apps/bridge/messages/received_image.hpp"
 #include "core/image.hpp"
 #include "io/inputs/pair_reader.hpp"
 #include "io/messages/camera_info_message.hpp"
+#include "io/messages/image_message.hpp"
 #include "io/messages/stamp_pairing.hpp"
 #include "io/sequence/sequence.hpp"
 
 namespace motorcade {
+
+/// An image as it came, and the owner of its bytes.
+struct ReceivedImage {
+  std::int64_t stamp_ns = 0;
+  std::variant<ImageMessage, CompressedImageMessage> message{};
+  std::shared_ptr<const void> holder{};
+};
+
+/// Names of a camera's topics, as ROS has them: `/left/image_raw`.
+struct CameraTopics {
+  std::string image{}, info{};  // no info: it is not read
+};
 
 using ReceivedPair = StampPairing<ReceivedImage>::Pair;
 

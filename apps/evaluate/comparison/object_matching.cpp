@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/evaluate/comparison/overlap.hpp"
-#include "apps/recorded/label_motion.hpp"
+#include "apps/recorded/recorded_drive.hpp"
 #include "core/assignment.hpp"
 
 namespace motorcade {

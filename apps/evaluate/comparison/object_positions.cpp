@@ -1,6 +1,8 @@
 #include "apps/evaluate/comparison/object_positions.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace motorcade {
 namespace {
@@ -70,6 +72,15 @@ std::optional<Eigen::Vector3d> originDrift_m(const FollowedLabel& label) {
   return most - least;
 }
 
+/// The frames of `label` that are also in `other`.
+FollowedLabel commonFrames(const FollowedLabel& label, const FollowedLabel& other) {
+  std::set<FrameId> theirs;
+  for (const auto& frame : other.frames) theirs.insert(frame.frame);
+  FollowedLabel common = label;
+  std::erase_if(common.frames, [&](const FollowedLabel::Frame& frame) { return !theirs.contains(frame.frame); });
+  return common;
+}
+
 }  // namespace
 
 std::optional<PositionErrors> positionErrors(const FollowedLabel& label) {
@@ -127,6 +138,34 @@ SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels) {
     mean = mean * SE3::exp(step / static_cast<double>(bodies.size()));
   }
   return mean;
+}
+
+double ComparedObject::relativeError(std::size_t kind) const {
+  const double theirs_m = baseline.ate_m[kind].rmse;
+  return theirs_m > 0 ? (theirs_m - ours.ate_m[kind].rmse) / theirs_m : 0;
+}
+
+RunComparison compareRuns(const std::vector<FollowedLabel>& ours, const std::vector<FollowedLabel>& baseline) {
+  std::map<std::int64_t, ComparedObject> best;
+  for (const auto& a : ours) {
+    for (const auto& b : baseline) {
+      if (a.label != b.label) continue;
+      const auto mine = positionErrors(commonFrames(a, b)), theirs = positionErrors(commonFrames(b, a));
+      ComparedObject& object = best[a.label];
+      if (mine && theirs && mine->frames > object.ours.frames) object = {a.label, a.track, b.track, *mine, *theirs};
+    }
+  }
+  RunComparison comparison;
+  for (const auto& [label, object] : best) {
+    if (object.ours.frames == 0) continue;
+    comparison.objects.push_back(object);
+    if (object.ours.frames < kLeastFramesOfMean) continue;
+    ++comparison.objects_of_mean;
+    for (std::size_t kind = 0; kind < kPositionKinds; ++kind)
+      comparison.mean_relative_error[kind] += object.relativeError(kind);
+  }
+  for (double& mean : comparison.mean_relative_error) mean /= std::max(1, comparison.objects_of_mean);
+  return comparison;
 }
 
 }  // namespace motorcade

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/evaluate/comparison/followed_label.hpp"
+#include "apps/evaluate/comparison/followed_objects.hpp"
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 
 /// Distance of a body's origin from its label's position, by several references.
@@ -53,5 +53,22 @@ MeanPositionErrors meanOf(const std::vector<PositionErrors>& objects);
 
 /// The constant X that brings estimated body frames to the labels' box frames, label = body * X, averaged over pairs.
 SE3 bodyOffset(const std::vector<SE3>& bodies, const std::vector<SE3>& labels);
+
+/// One label over the frames in which both runs followed it, by the two tracks with the most common frames.
+struct ComparedObject {
+  std::int64_t label = -1;
+  TrackId track, baseline_track;
+  PositionErrors ours, baseline;
+  /// (ATE_baseline - ATE_ours) / ATE_baseline, of root mean squares.
+  double relativeError(std::size_t kind) const;
+};
+
+struct RunComparison {
+  std::vector<ComparedObject> objects;
+  int objects_of_mean = 0;  // followed in at least `kLeastFramesOfMean` common frames
+  std::array<double, kPositionKinds> mean_relative_error{};
+};
+/// Compares two runs of the same drive. Labels that only one of them followed are left out.
+RunComparison compareRuns(const std::vector<FollowedLabel>& ours, const std::vector<FollowedLabel>& baseline);
 
 }  // namespace motorcade

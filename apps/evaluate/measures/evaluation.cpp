@@ -5,11 +5,9 @@
 #include <map>
 #include <span>
 
-#include "apps/evaluate/comparison/mounting.hpp"
-#include "apps/evaluate/comparison/recovered_finals.hpp"
-#include "apps/evaluate/comparison/truth_noise.hpp"
 #include "apps/recorded/recorded_run.hpp"
 #include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/files/line_file.hpp"
 #include "io/files/number_text.hpp"
 #include "io/sequence/pose_interpolation.hpp"
@@ -196,6 +194,29 @@ std::string truthRow(const TrueObject& object) {
   return row;
 }
 
+/// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labeled object.
+void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
+                 const std::optional<ObjectTruths>& truths) {
+  makeFolder(folder);
+  writeKittiPoses(folder / "camera_truth.txt", camera.T_world_cam);
+  if (!truths) return;
+  LineFile table(folder / "objects_truth.csv");
+  table.writeLine("frame,id,type,moving,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz");
+  std::map<std::int64_t, std::vector<std::string>> tum;
+  for (const auto& [frame, objects] : describeObjects(*truths, sequence.stamps)) {
+    for (const auto& object : objects) {
+      table.writeLine(truthRow(object));
+      tum[object.truth.id].push_back(tumLine(sequence.stamps[frame.value], object.truth.T_world_object));
+    }
+  }
+  table.close();
+  for (const auto& [id, lines] : tum) {
+    LineFile out(folder / ("object_" + std::to_string(id) + ".tum"));
+    for (const auto& line : lines) out.writeLine(line);
+    out.close();
+  }
+}
+
 }  // namespace
 
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
@@ -273,30 +294,6 @@ Evaluation evaluateRun(const EvaluateOptions& options) {
   }
   if (!options.export_truth.empty()) exportTruth(options.export_truth, sequence, camera, truths);
   return evaluation;
-}
-
-void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
-                 const std::optional<ObjectTruths>& truths) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw OutputError(folder.string() + ": cannot be made a folder: " + error.message());
-  writeKittiPoses(folder / "camera_truth.txt", camera.T_world_cam);
-  if (!truths) return;
-  LineFile table(folder / "objects_truth.csv");
-  table.writeLine("frame,id,type,moving,r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz");
-  std::map<std::int64_t, std::vector<std::string>> tum;
-  for (const auto& [frame, objects] : describeObjects(*truths, sequence.stamps)) {
-    for (const auto& object : objects) {
-      table.writeLine(truthRow(object));
-      tum[object.truth.id].push_back(tumLine(sequence.stamps[frame.value], object.truth.T_world_object));
-    }
-  }
-  table.close();
-  for (const auto& [id, lines] : tum) {
-    LineFile out(folder / ("object_" + std::to_string(id) + ".tum"));
-    for (const auto& line : lines) out.writeLine(line);
-    out.close();
-  }
 }
 
 }  // namespace motorcade

@@ -5,18 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluate/comparison/followed_motion.hpp"
+#include "apps/evaluate/comparison/followed_objects.hpp"
 #include "apps/evaluate/comparison/object_measures.hpp"
-#include "apps/evaluate/comparison/run_comparison.hpp"
+#include "apps/evaluate/comparison/object_positions.hpp"
 #include "apps/evaluate/comparison/trajectory_error.hpp"
 #include "apps/evaluate/comparison/truth_check.hpp"
 #include "apps/evaluate/measures/acceleration_measures.hpp"
-#include "apps/evaluate/measures/box_measures.hpp"
+#include "apps/evaluate/measures/belief_measures.hpp"
 #include "apps/evaluate/measures/covariance_measures.hpp"
-#include "apps/evaluate/measures/existence_measures.hpp"
-#include "apps/evaluate/measures/kind_measures.hpp"
-#include "apps/evaluate/measures/mask_measures.hpp"
-#include "apps/evaluate/measures/segment_errors.hpp"
+#include "apps/evaluate/measures/shape_measures.hpp"
 #include "apps/evaluate/measures/tracking_measures.hpp"
 #include "apps/evaluate/measures/worst_frames.hpp"
 #include "io/results/run_folder.hpp"
@@ -103,9 +100,5 @@ KindEvaluation evaluatePoses(const std::vector<SE3>& poses, const Sequence& sequ
 /// trajectory with times, which may end earlier. Throws InputError.
 std::vector<SE3> baselinePoses(const std::filesystem::path& file, std::int64_t first_frame, std::size_t frames_run,
                                const Sequence& sequence);
-
-/// Writes `camera_truth.txt`, `objects_truth.csv` and an `object_ID.tum` for every labeled object.
-void exportTruth(const std::filesystem::path& folder, const Sequence& sequence, const CameraTruth& camera,
-                 const std::optional<ObjectTruths>& truths);
 
 }  // namespace motorcade

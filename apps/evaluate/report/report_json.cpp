@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/report/reliability_json.hpp"
 #include "apps/evaluate/report/report.hpp"
 #include "io/files/json_text.hpp"
 #include "io/results/object_row.hpp"

@@ -1,5 +1,4 @@
-#include "apps/synth/models/model_size.hpp"
-
+#include "apps/synth/models/models.hpp"
 #include "core/se3.hpp"
 
 namespace motorcade::synth {

@@ -1,37 +1,21 @@
 #include "apps/synth/output/sequence_writer.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "apps/synth/output/ground_truth.hpp"
-#include "apps/synth/output/vehicle_sensors.hpp"
 #include "apps/synth/shapes/noise.hpp"
-#include "io/files/errors.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/files/line_file.hpp"
 #include "io/images/image_file.hpp"
-#include "io/inputs/vehicle_motion_file.hpp"
+#include "io/inputs/vehicle_motion.hpp"
 #include "io/truth/trajectory.hpp"
 
 namespace motorcade::synth {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
-
-void makeFolders(const fs::path& folder) {
-  for (const char* name : {"image_0", "image_1", "disp", "instance"}) {
-    std::error_code error;
-    fs::create_directories(folder / name, error);
-    if (error) throw OutputError((folder / name).string() + ": " + error.message());
-  }
-}
 
 CalibrationErrors drawnErrors(const Scene& scene, const RigError& rig) {
   constexpr int kCalibration = 4211;
@@ -57,8 +41,8 @@ StereoCamera rightCamera(const Scene& scene, int frame, const WriteOptions& opti
 void writeCalibration(const fs::path& file, const StereoCamera& c, const RigError& rig) {
   std::string text;
   for (int i = 0; i < 4; ++i)
-    text += format("P%d: %.9g 0 %.9g %.9g 0 %.9g %.9g 0 0 0 1 0\n", i, c.fx_px, c.cx_px,
-                   i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m, c.fy_px, c.cy_px);
+    text += fmt::format("P{}: {:.9g} 0 {:.9g} {:.9g} 0 {:.9g} {:.9g} 0 0 0 1 0\n", i, c.fx_px, c.cx_px,
+                        i % 2 == 0 ? 0.0 : -c.fx_px * c.baseline_m, c.fy_px, c.cy_px);
   if (rig == RigError{}) text += "calibration_sigmas: 0 0 0 0 0\n";
   text += "R0_rect: 1 0 0 0 1 0 0 0 1\n";
   text += "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
@@ -94,12 +78,12 @@ struct Tables {
   LineFile times, poses, labels, objects;
 
   void add(const FrameScene& frame, const SE3& T_world_map, const std::vector<Label>& seen) {
-    times.writeLine(format("%.6f", frame.scene().frame_s * frame.frame()));
+    times.writeLine(fmt::format("{:.6f}", frame.scene().frame_s * frame.frame()));
     poses.writeLine(kittiLine(T_world_map * frame.T_map_cam()));
     for (const auto& label : seen) labels.writeLine(labelLine(frame.frame(), label));
     for (const auto& object : frame.objects()) {
       const Placed& body = object.front();
-      objects.writeLine(format("%d %d %d ", frame.frame(), body.id, body.moving ? 1 : 0) +
+      objects.writeLine(fmt::format("{} {} {} ", frame.frame(), body.id, body.moving ? 1 : 0) +
                         kittiLine(T_world_map * body.T_map_body));
     }
   }
@@ -113,7 +97,7 @@ struct Tables {
 void writeSequence(const Scene& scene, const fs::path& folder, const WriteOptions& asked) {
   WriteOptions options = asked;
   options.render.errors = drawnErrors(scene, options.rig_error);
-  makeFolders(folder);
+  for (const char* name : {"image_0", "image_1", "disp", "instance"}) makeFolder(folder / name);
   writeCalibration(folder / "calib.txt", options.camera, options.rig_error);
   Tables tables(folder);
   const SE3 T_world_map = scene.ego.T_map_cam(scene.time_s(0)).inverse();
@@ -122,7 +106,7 @@ void writeSequence(const Scene& scene, const fs::path& folder, const WriteOption
     const FrameScene frame(scene, k, options.with_movers);
     const Rendering left = render(frame, options.camera, StereoSide::kLeft, options.render);
     const Rendering right = render(frame, rightCamera(scene, k, options), StereoSide::kRight, options.render);
-    const std::string name = format("%06d.png", k);
+    const std::string name = fmt::format("{:06}.png", k);
     writePng(folder / "image_0" / name, left.image);
     writePng(folder / "image_1" / name, right.image);
     writePng16(folder / "disp" / name, disparityOf(left, options.camera));

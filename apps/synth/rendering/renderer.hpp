@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "apps/synth/rendering/lens_errors.hpp"
+#include "apps/synth/rendering/rays.hpp"
 #include "apps/synth/scenes/frame_scene.hpp"
 #include "apps/synth/scenes/style.hpp"
 #include "core/image.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/synth/scenes/path.hpp"
 #include "apps/synth/scenes/road_network.hpp"
-#include "apps/synth/scenes/trajectory.hpp"
 #include "apps/synth/shapes/primitive.hpp"
 #include "core/se3.hpp"
 

@@ -1,14 +1,9 @@
 #include <array>
-#include <functional>
 #include <numbers>
 #include <stdexcept>
 
-#include "apps/synth/scenes/bonnet_scene.hpp"
-#include "apps/synth/scenes/crowded_scenes.hpp"
-#include "apps/synth/scenes/garden_scenes.hpp"
-#include "apps/synth/scenes/house_scenes.hpp"
-#include "apps/synth/scenes/mixed_scenes.hpp"
-#include "apps/synth/scenes/scene_parts.hpp"
+#include "apps/synth/scenes/scene_builder.hpp"
+#include "apps/synth/scenes/scene_kinds.hpp"
 
 /// The scenes by name. Right-hand traffic; paths run along the map's x axis unless they bend.
 namespace motorcade::synth {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "apps/synth/shapes/primitive.hpp"
 
 namespace motorcade::synth {
@@ -29,5 +31,9 @@ Reflectance houseReflectance(const SurfacePoint& point);
 Reflectance streetReflectance(const SurfacePoint& point);
 /// Chooses by material.
 Reflectance reflectanceOf(const SurfacePoint& point);
+
+/// Light from infinity along a unit vector: sky with clouds, all cloud when overcast, and woods and hills on the
+/// horizon.
+float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed, bool overcast);
 
 }  // namespace motorcade::synth

@@ -3,7 +3,7 @@
 #include <array>
 #include <random>
 
-#include "core/thread_clock.hpp"
+#include "core/thread_placement.hpp"
 
 namespace motorcade::perf {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "core/thread_clock.hpp"
+#include "core/thread_placement.hpp"
 #include "perf/backend/solver/batch_reference.hpp"
 #include "perf/backend/solver/multibody_stream.hpp"
 #include "perf/support/process_memory.hpp"

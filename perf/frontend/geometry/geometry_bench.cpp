@@ -7,7 +7,7 @@
 #include "frontend/geometry/delaunay.hpp"
 #include "frontend/motion/ego_motion.hpp"
 #include "frontend/motion/ground_plane.hpp"
-#include "frontend/segmentation/motion_graph.hpp"
+#include "frontend/segmentation/motion_segmenter.hpp"
 #include "tests/support/stereo_views.hpp"
 
 /// Computations on points, without images. Items are points.

@@ -3,10 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/batch/slots.hpp"
-#include "apps/batch/slurm_script.hpp"
-#include "apps/batch/task_queue.hpp"
-#include "apps/batch/task_time.hpp"
+#include "apps/batch/local_runner.hpp"
+#include "apps/batch/slurm.hpp"
 #include "apps/batch/time_left.hpp"
 #include "io/files/errors.hpp"
 

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bridge/messages/message_conversion.hpp"
-#include "apps/bridge/messages/object_uuid.hpp"
+#include "apps/bridge/messages/object_fields.hpp"
 #include "apps/bridge/messages/topics.hpp"
 #include "motorcade/motorcade.hpp"
 #include "tests/apps/bridge/bridge_process.hpp"

@@ -21,6 +21,7 @@
 
 #include "core/se3.hpp"
 #include "motorcade/motorcade.hpp"
+#include "tests/io/temporary_folder.hpp"
 #include "tests/support/matchers.hpp"
 
 /// Processes of `motorcade bridge` and its subscriber, and the messages expected of them.
@@ -34,11 +35,6 @@ inline constexpr const char* kDrive = MOTORCADE_TINY_SEQUENCE;
 
 /// A domain that others hardly use, and whose ports lie below those that the system assigns.
 inline int unlikelyDomain() { return 60 + ::getpid() % 40; }
-
-inline std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// A program that is running; it is killed at the end if it still does.
 class Process {

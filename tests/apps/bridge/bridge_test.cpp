@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "apps/bridge/bridge_options.hpp"
+#include "apps/bridge/bridge_parts.hpp"
 #include "apps/bridge/dds/dds_configuration.hpp"
 #include "apps/bridge/messages/message_conversion.hpp"
 #include "io/files/errors.hpp"
@@ -49,7 +49,7 @@ TEST(BridgeMessages, QuaternionsAreThoseOfTheRotation) {
 TEST(BridgeMessages, ThePoseIsTheCamerasInTheWorld) {
   Result result;
   result.stamp_ns = 12'000'000'034;
-  result.T_world_cam = rowsOf(turned({0, 0, kHalfTurn / 2}, {1, 2, 3}));
+  result.T_world_cam = rowsByHand(turned({0, 0, kHalfTurn / 2}, {1, 2, 3}));
   const ros::PoseStamped message = poseStampedOf(result, {.world = "map", .child = "base_link"});
   EXPECT_EQ(message.header.stamp.sec, 12);
   EXPECT_EQ(message.header.stamp.nanosec, 34U);
@@ -89,10 +89,10 @@ TEST(BridgeMessages, PoseCovarianceOfAQuarterTurnIsTheHandComputedOne) {
 
 TEST(BridgeMessages, OdometryHasTheTwistInTheChildsFrame) {
   Result result;
-  result.T_world_cam = rowsOf(turned({0, 0, 1}));
+  result.T_world_cam = rowsByHand(turned({0, 0, 1}));
   result.velocity = {10, 0.1, 0.2, 0.01, 0.02, 0.3};
-  result.velocity_covariance = rowsOf(unevenCovariance());
-  result.pose_covariance = rowsOf(diagonal(0.25, 0.01));
+  result.velocity_covariance = rowsByHand(unevenCovariance());
+  result.pose_covariance = rowsByHand(diagonal(0.25, 0.01));
   const ros::Odometry message = odometryOf(result, {.world = "odom", .child = "camera"});
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "camera");
@@ -108,7 +108,7 @@ TEST(BridgeMessages, OdometryHasTheTwistInTheChildsFrame) {
 TEST(BridgeMessages, TheTransformIsThePose) {
   Result result;
   result.stamp_ns = 12'000'000'034;
-  result.T_world_cam = rowsOf(turned({0, 0, kHalfTurn / 2}, {1, 2, 3}));
+  result.T_world_cam = rowsByHand(turned({0, 0, kHalfTurn / 2}, {1, 2, 3}));
   const ros::TransformStamped message = transformStampedOf(result, {.world = "odom", .child = "base_link"});
   EXPECT_EQ(message.header.stamp.nanosec, 34U);
   EXPECT_EQ(message.header.frame_id, "odom");
@@ -119,7 +119,7 @@ TEST(BridgeMessages, TheTransformIsThePose) {
 
 TEST(BridgeMessages, WhatIsNotKnownHasAWideCovariance) {
   const ros::Odometry message = odometryOf(Result(), FrameIds());
-  EXPECT_EQ(message.pose_covariance, rowsOf(kUnknownVariance * Matrix6d::Identity()));
+  EXPECT_EQ(message.pose_covariance, rowsByHand(kUnknownVariance * Matrix6d::Identity()));
 }
 
 TEST(BridgeOptions, ThePaceIsTheCapturesUnlessToldOtherwise) {

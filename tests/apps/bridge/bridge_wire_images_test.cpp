@@ -5,7 +5,7 @@
 #include <sensor_msgs.h>
 #include <unistd.h>
 
-#include "apps/bridge/dds/dds_images.hpp"
+#include "apps/bridge/dds/dds_values.hpp"
 #include "tests/apps/bridge/bridged_cameras.hpp"
 #include "tests/apps/bridge/wire_bytes.hpp"
 

@@ -19,9 +19,9 @@ inline Result::Object bridgedObject() {
   const SE3 T_world_body = turned({0.05, -0.1, 1.1}, {42, 9, -0.3});
   Result::Object object;
   object.id = 7;
-  object.T_world_body = rowsOf(T_world_body);
-  object.T_cam_body = rowsOf(bridgedCamera().inverse() * T_world_body);
-  object.covariance = rowsOf(Matrix6d(0.1 * unevenCovariance()));
+  object.T_world_body = rowsByHand(T_world_body);
+  object.T_cam_body = rowsByHand(bridgedCamera().inverse() * T_world_body);
+  object.covariance = rowsByHand(Matrix6d(0.1 * unevenCovariance()));
   object.velocity_world_mps = {3, 7, 0.2};
   object.velocity_covariance = {0.30, 0.05, 0.01, 0.05, 0.20, 0.02, 0.01, 0.02, 0.10};
   object.yaw_rate_radps = 0.4;
@@ -42,7 +42,7 @@ inline Result bridgedResult(std::vector<Result::Object> objects) {
   Result result;
   result.frame = 3;
   result.stamp_ns = kBridgedStamp_ns;
-  result.T_world_cam = rowsOf(bridgedCamera());
+  result.T_world_cam = rowsByHand(bridgedCamera());
   result.objects = std::move(objects);
   return result;
 }

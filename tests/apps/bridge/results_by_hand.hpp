@@ -14,14 +14,14 @@ namespace motorcade::test {
 inline constexpr double kHalfTurn = std::numbers::pi;  // of rotations
 inline constexpr double kRounding = 1e-12;             // of a few operations on numbers of about one
 
-inline std::array<double, 12> rowsOf(const SE3& T) {
+inline std::array<double, 12> rowsByHand(const SE3& T) {
   std::array<double, 12> rows{};
   Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> matrix(rows.data());
   matrix << T.rotation(), T.translation();
   return rows;
 }
 
-inline std::array<double, 36> rowsOf(const Matrix6d& covariance) {
+inline std::array<double, 36> rowsByHand(const Matrix6d& covariance) {
   std::array<double, 36> rows{};
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data()) = covariance;
   return rows;

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 
 #include "apps/check/finding_guide.hpp"
-#include "apps/check/row_error_names.hpp"
 
 namespace motorcade {
 namespace {

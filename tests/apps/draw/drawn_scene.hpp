@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "apps/draw/views.hpp"
 #include "apps/recorded/recorded_drive.hpp"
 #include "io/images/image_file.hpp"
 
@@ -46,6 +47,15 @@ inline RecordedDrive driveWith(const ObjectEstimate& object) {
   drive.T_world_cam = {SE3()};
   drive.objects[0] = {object};
   return drive;
+}
+
+/// The left image with what is painted onto it.
+inline RgbImage drawImageView(const DrawnImages& images, const RecordedDrive& drive, std::size_t frame) {
+  Canvas canvas(images.left);
+  Marks marks;
+  Sheet sheet{canvas, marks};
+  paintImageView(sheet, images, drive, frame);
+  return canvas.image();
 }
 
 /// A label in frame 0 of KITTI's box frame: x along the length, which is across the road here, y down.

@@ -1,10 +1,9 @@
-#include "apps/draw/image_view.hpp"
-
 #include <limits>
 
 #include <gmock/gmock.h>
 
 #include "apps/draw/tags.hpp"
+#include "apps/draw/views.hpp"
 #include "tests/apps/draw/drawn_scene.hpp"
 
 namespace motorcade {
@@ -12,6 +11,7 @@ namespace {
 
 using test::carAhead;
 using test::colorfulness;
+using test::drawImageView;
 using test::driveWith;
 using test::grayImage;
 using test::kHeight_px;

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/evaluate_command.hpp"
 #include "apps/evaluate/report/report.hpp"
 #include "io/files/errors.hpp"
 #include "io/images/image_file.hpp"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <numbers>
 
-#include "apps/evaluate/comparison/followed_label.hpp"
+#include "apps/evaluate/comparison/followed_objects.hpp"
 
 namespace motorcade::test {
 

@@ -1,11 +1,9 @@
-#include "apps/evaluate/report/kitti_export.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include <gmock/gmock.h>
 
-#include "apps/evaluate/evaluate_command.hpp"
+#include "apps/evaluate/report/report.hpp"
 #include "io/files/errors.hpp"
 #include "io/images/image_file.hpp"
 #include "io/layouts/open_sequence.hpp"

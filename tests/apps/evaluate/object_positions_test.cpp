@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/evaluate/comparison/run_comparison.hpp"
 #include "tests/apps/evaluate/followed_label_by_hand.hpp"
 
 namespace motorcade {

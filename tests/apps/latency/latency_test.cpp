@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/latency/latency_command.hpp"
 #include "apps/latency/latency_report.hpp"
-#include "apps/latency/latency_table.hpp"
 #include "io/files/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/matchers.hpp"

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "apps/merge/paired_test.hpp"
+#include "apps/merge/batch_comparison.hpp"
 
 namespace motorcade {
 namespace {

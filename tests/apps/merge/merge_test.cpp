@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/merge/batch_comparison.hpp"
-#include "apps/merge/measure_names.hpp"
-#include "apps/merge/merge_command.hpp"
+#include "apps/merge/measures.hpp"
 #include "apps/merge/merged_files.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/task_record.hpp"

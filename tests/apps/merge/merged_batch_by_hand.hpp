@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/evaluate/measures/axis_reliability.hpp"
-#include "apps/merge/merge_command.hpp"
+#include "apps/evaluate/measures/covariance_measures.hpp"
+#include "apps/merge/merged_files.hpp"
 #include "apps/tasks/batch_folder.hpp"
 #include "apps/tasks/plan.hpp"
 #include "apps/tasks/task_record.hpp"
@@ -120,9 +120,7 @@ class MergeBatch : public testing::Test {
 
   std::string merged(const std::string& file, const MergeOptions& options) {
     EXPECT_EQ(runMerge(options), 0);
-    std::ostringstream content;
-    content << std::ifstream(options.batch / "merged" / file).rdbuf();
-    return content.str();
+    return contentOf(options.batch / "merged" / file);
   }
   std::string merged(const std::string& file) { return merged(file, {.batch = root_ / "a"}); }
 

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/pipeline/parameter_table.hpp"
 #include "io/files/errors.hpp"
 
 namespace motorcade {

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "apps/pipeline/configuration.hpp"
-#include "apps/pipeline/parameter_table.hpp"
 #include "apps/pipeline/pipeline.hpp"
 #include "io/files/errors.hpp"
 #include "tests/apps/pipeline/toy_stages.hpp"

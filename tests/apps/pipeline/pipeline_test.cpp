@@ -19,9 +19,11 @@
 namespace motorcade {
 namespace {
 
-constexpr std::array kAllStages = {
-    Stage::kPrepare,  Stage::kStereoMatching,          Stage::kOpticalFlow, Stage::kSceneFlowSegmentation,
-    Stage::kTracking, Stage::kIncrementalOptimization, Stage::kObjectShapes};
+constexpr auto kAllStages = [] {
+  std::array<Stage, kStageCount> stages{};
+  for (std::size_t i = 0; i < kStageCount; ++i) stages[i] = static_cast<Stage>(i);
+  return stages;
+}();
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;

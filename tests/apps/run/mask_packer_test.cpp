@@ -1,9 +1,8 @@
-#include "apps/run/mask_packer.hpp"
-
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "apps/run/object_view_writer.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/synth/models/garden_model.hpp"
+#include "apps/synth/models/models.hpp"
 #include "apps/synth/scenes/frame_scene.hpp"
 #include "apps/synth/scenes/scene_builder.hpp"
 

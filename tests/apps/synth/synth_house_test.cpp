@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "apps/synth/models/house_model.hpp"
+#include "apps/synth/models/models.hpp"
 #include "apps/synth/scenes/scene_builder.hpp"
 #include "apps/synth/shapes/noise.hpp"
 #include "apps/synth/textures/texture.hpp"

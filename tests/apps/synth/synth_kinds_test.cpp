@@ -8,10 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "apps/synth/models/large_vehicle_model.hpp"
-#include "apps/synth/models/person_model.hpp"
-#include "apps/synth/models/two_wheeler_model.hpp"
-#include "apps/synth/models/vehicle_model.hpp"
+#include "apps/synth/models/models.hpp"
 #include "apps/synth/output/ground_truth.hpp"
 #include "tests/apps/synth/rendered_scene.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/synth/rendering/ray_caster.hpp"
 #include "apps/synth/rendering/ray_tree.hpp"
-#include "apps/synth/rendering/wet_ground.hpp"
 #include "apps/synth/scenes/scene_builder.hpp"
 #include "apps/synth/textures/texture.hpp"
 #include "tests/apps/synth/rendered_scene.hpp"

@@ -1,6 +1,4 @@
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <stdexcept>
 
@@ -22,11 +20,6 @@ WriteOptions twoSmallFrames(Style style) {
   options.camera = kittiCamera(248, 75);
   options.render.style = style;
   return options;
-}
-
-std::string bytesOf(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::vector<std::uint8_t> pictured(const std::string& scene_name, int frame, Style style, int threads = 2) {
@@ -52,7 +45,7 @@ TEST(SynthStyle, PlainIsTheDefault) {
   writeSequence(makeScene("urban", 3), folder / "default", options);
   writeSequence(makeScene("urban", 3), folder / "plain", twoSmallFrames(styleOf("plain")));
   for (const char* image : {"image_0/000001.png", "image_1/000001.png"})
-    EXPECT_EQ(bytesOf(folder / "default" / image), bytesOf(folder / "plain" / image));
+    EXPECT_EQ(test::contentOf(folder / "default" / image), test::contentOf(folder / "plain" / image));
 }
 
 TEST(SynthStyle, FilmChangesTheImagesAndNothingOfTheTruth) {
@@ -62,9 +55,9 @@ TEST(SynthStyle, FilmChangesTheImagesAndNothingOfTheTruth) {
   writeSequence(scene, folder / "film", twoSmallFrames(Style::kFilm));
   for (const char* file : {"disp/000001.png", "instance/000001.png", "poses.txt", "label_02.txt", "object_poses.txt",
                            "calib.txt", "times.txt"})
-    EXPECT_EQ(bytesOf(folder / "plain" / file), bytesOf(folder / "film" / file)) << file;
+    EXPECT_EQ(test::contentOf(folder / "plain" / file), test::contentOf(folder / "film" / file)) << file;
   for (const char* image : {"image_0/000001.png", "image_1/000001.png"})
-    EXPECT_NE(bytesOf(folder / "plain" / image), bytesOf(folder / "film" / image)) << image;
+    EXPECT_NE(test::contentOf(folder / "plain" / image), test::contentOf(folder / "film" / image)) << image;
 }
 
 TEST(SynthStyle, FilmIsTheSameForASeedAndAnyThreadCount) {

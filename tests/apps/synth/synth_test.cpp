@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -41,11 +39,6 @@ bool overlap(const Placed& a, const Placed& b, double clearance_m) {
         return true;
     }
   return false;
-}
-
-std::string content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 TEST(SynthRays, MeetWhatTryingEveryPartFinds) {
@@ -194,10 +187,10 @@ TEST(SynthSequence, IsTheSameForASeedAndAnyThreadCountAndStartsAtTheIdentity) {
   writeSequence(makeScene("overtake", 5), folder / "three", options);
   for (const char* file : {"image_0/000001.png", "image_1/000001.png", "disp/000001.png", "instance/000001.png",
                            "poses.txt", "label_02.txt", "object_poses.txt", "calib.txt", "times.txt"})
-    EXPECT_EQ(content(folder / "one" / file), content(folder / "three" / file)) << file;
+    EXPECT_EQ(test::contentOf(folder / "one" / file), test::contentOf(folder / "three" / file)) << file;
   writeSequence(makeScene("overtake", 6), folder / "other", options);
-  EXPECT_NE(content(folder / "one/image_0/000001.png"), content(folder / "other/image_0/000001.png"));
-  EXPECT_EQ(content(folder / "one/poses.txt").substr(0, 11), "1.000000000");
+  EXPECT_NE(test::contentOf(folder / "one/image_0/000001.png"), test::contentOf(folder / "other/image_0/000001.png"));
+  EXPECT_EQ(test::contentOf(folder / "one/poses.txt").substr(0, 11), "1.000000000");
   const auto disparity = readPng16(folder / "one/disp/000001.png");
   EXPECT_GT(disparity.pixels[70 * 248 + 124], 0);
 }
@@ -219,7 +212,7 @@ TEST(SynthSequence, ARigErrorMovesTheRightImageAloneAndByWhatWasAsked) {
   options.rig_error = {.disparity_offset_px = kRight_px, .row_offset_px = kDown_px};
   writeSequence(scene, folder / "off", options);
   for (const char* file : {"image_0/000000.png", "disp/000000.png", "instance/000000.png", "label_02.txt"})
-    EXPECT_EQ(content(folder / "exact" / file), content(folder / "off" / file)) << file;
+    EXPECT_EQ(test::contentOf(folder / "exact" / file), test::contentOf(folder / "off" / file)) << file;
   ImagePool pool;
   const Image exact = readImage(folder / "exact/image_1/000000.png", pool),
               off = readImage(folder / "off/image_1/000000.png", pool);
@@ -237,9 +230,9 @@ TEST(SynthSequence, ErrorsOfTheCalibrationBendBothImagesAndAreNotTold) {
   writeSequence(scene, folder / "exact", options);
   options.rig_error = {.calibration = 1};
   writeSequence(scene, folder / "off", options);
-  EXPECT_EQ(content(folder / "exact/poses.txt"), content(folder / "off/poses.txt"));
+  EXPECT_EQ(test::contentOf(folder / "exact/poses.txt"), test::contentOf(folder / "off/poses.txt"));
   for (const char* file : {"image_0/000000.png", "image_1/000000.png"})
-    EXPECT_NE(content(folder / "exact" / file), content(folder / "off" / file)) << file;
+    EXPECT_NE(test::contentOf(folder / "exact" / file), test::contentOf(folder / "off" / file)) << file;
   EXPECT_EQ(readCalibration(folder / "exact/calib.txt").sigmas, (CalibrationSigmas{0, 0, 0, 0, 0}));
   EXPECT_FALSE(readCalibration(folder / "off/calib.txt").sigmas);
 }
@@ -251,8 +244,10 @@ TEST(SynthSequence, AShakeMovesTheRightImageAlone) {
   writeSequence(scene, folder / "still", options);
   options.rig_error = {.shake_px = 1};
   writeSequence(scene, folder / "shaken", options);
-  EXPECT_EQ(content(folder / "still/image_0/000000.png"), content(folder / "shaken/image_0/000000.png"));
-  EXPECT_NE(content(folder / "still/image_1/000000.png"), content(folder / "shaken/image_1/000000.png"));
+  EXPECT_EQ(test::contentOf(folder / "still/image_0/000000.png"),
+            test::contentOf(folder / "shaken/image_0/000000.png"));
+  EXPECT_NE(test::contentOf(folder / "still/image_1/000000.png"),
+            test::contentOf(folder / "shaken/image_1/000000.png"));
 }
 
 /// Compares rays with the shifts of a far point's observations, as rays are shifted where they are infinitely long.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/synth/output/vehicle_sensors.hpp"
+#include "apps/synth/output/ground_truth.hpp"
 #include "apps/synth/scenes/scene_builder.hpp"
 
 namespace motorcade::synth {

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/tasks/found_drives.hpp"
-#include "apps/tasks/published_figures.hpp"
+#include "apps/tasks/plan.hpp"
+#include "apps/tasks/planned_drive.hpp"
 #include "io/files/errors.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -8,13 +8,14 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
-#include "apps/tasks/child_process.hpp"
+#include "apps/console/child_process.hpp"
 #include "apps/tasks/fingerprint.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
 
+using test::contentOf;
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
@@ -37,11 +38,6 @@ class Performer : public testing::Test {
     std::ofstream(program) << "#!/bin/sh\n" << script << "\n";
     fs::permissions(program, fs::perms::owner_all);
     return {.folder = folder_, .program = program, .program_stamp = fileStamp(program), .attempt = attempt};
-  }
-  static std::string contentOf(const fs::path& file) {
-    std::ostringstream content;
-    content << std::ifstream(file).rdbuf();
-    return content.str();
   }
 
   const test::TemporaryFolder root_;

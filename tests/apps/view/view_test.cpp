@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/view/frame_json.hpp"
-#include "apps/view/listen_address.hpp"
-#include "apps/view/recorded_files.hpp"
+#include "apps/view/page_json.hpp"
+#include "apps/view/recorded_view.hpp"
 #include "apps/view/replay_gate.hpp"
+#include "apps/view/request_guard.hpp"
 #include "apps/view/run_truth.hpp"
 #include "apps/view/viewers.hpp"
 #include "io/files/errors.hpp"

@@ -1,13 +1,91 @@
 #include "frontend/segmentation/motion_segmenter.hpp"
 
 #include <algorithm>
+#include <queue>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/empty_circle.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/noise.hpp"
 #include "tests/support/stereo_views.hpp"
 
 namespace motorcade {
 namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+using Components = std::vector<std::vector<int>>;
+
+Points onPixelGrid(int count, test::Noise& noise) {
+  Points points;
+  for (int i = 0; i < count; ++i)
+    points.emplace_back(std::round(noise.uniform(0, 16 * 500)) / 16, std::round(noise.uniform(0, 16 * 180)) / 16);
+  return points;
+}
+
+/// Components by breadth-first search, in the order that the graph promises.
+template <class Predicate>
+Components search(int count, const std::set<std::array<int, 2>>& edges, const Predicate& together) {
+  std::vector<bool> seen(static_cast<std::size_t>(count), false);
+  Components components;
+  for (int start = 0; start < count; ++start) {
+    if (seen[start]) continue;
+    std::vector<int> members;
+    std::queue<int> open({start});
+    seen[start] = true;
+    while (!open.empty()) {
+      const int i = open.front();
+      open.pop();
+      members.push_back(i);
+      for (int j = 0; j < count; ++j) {
+        if (seen[j] || !edges.contains({std::min(i, j), std::max(i, j)}) || !together(i, j)) continue;
+        seen[j] = true;
+        open.push(j);
+      }
+    }
+    std::ranges::sort(members);
+    components.push_back(members);
+  }
+  return components;
+}
+
+TEST(MotionGraph, ComponentsAreThoseOfTheTriangulationByItsDefinition) {
+  int compared = 0, several = 0;
+  for (std::uint64_t seed = 0; seed < 15; ++seed) {
+    test::Noise noise(seed);
+    const int count = 30 + 2 * static_cast<int>(seed);
+    const Points points = onPixelGrid(count, noise);
+    std::vector<test::Grid> grid;
+    std::vector<double> speed;
+    for (const auto& p : points) {
+      grid.push_back(test::onGrid(p));
+      speed.push_back(std::floor(p.x() / 100) + noise.uniform(0, 1.2));  // neighboring stripes sometimes touch
+    }
+    const auto edges = test::delaunayEdgesByDefinition(grid);
+    if (!edges) continue;  // no unique triangulation to compare with
+    const auto together = [&](int i, int j) { return std::abs(speed[i] - speed[j]) < 0.5; };
+    const Components expected = search(count, *edges, together);
+    EXPECT_EQ(cutDelaunayComponents(points, together), expected) << "seed " << seed;
+    ++compared;
+    several += expected.size() > 3 && expected.size() < points.size() / 2;
+  }
+  EXPECT_GE(compared, 10);  // degenerate draws are rare, ...
+  EXPECT_GE(several, 5);    // ... and the predicate neither cuts nor keeps all
+}
+
+TEST(MotionGraph, AClusterBetweenOthersIsCutOutAndCoincidentPointsStayTogether) {
+  const Points points{{10, 10}, {50, 10}, {50, 10}, {10, 40}, {52, 40}, {10, 10.01}, {90, 12}, {91, 41}};
+  const std::vector<int> body{0, 1, 2, 0, 1, 3, 4, 4};  // points 2 and 5 lie at the pixel of another body
+  const auto together = [&](int i, int j) { return body[i] == body[j]; };
+  const Components expected{{0, 3, 5}, {1, 2, 4}, {6, 7}};
+  EXPECT_EQ(cutDelaunayComponents(points, together), expected);
+}
+
+TEST(MotionGraph, NoPointsHaveNoComponents) {
+  const auto never = [](int, int) { return false; };
+  EXPECT_TRUE(cutDelaunayComponents({}, never).empty());
+  EXPECT_EQ(cutDelaunayComponents(Points{{1, 1}, {5, 5}}, never).size(), 2U);
+}
 
 constexpr double kSpeed_mps = 13;  // of the camera
 
@@ -151,6 +229,73 @@ TEST(MotionSegmenter, AnEndThatBreaksTheGeometryIsCutFromOneThatKeepsIt) {
   EXPECT_GE(components.size(), 2U);
   for (const auto& s : components)
     for (const int i : s.points) EXPECT_EQ(violates[i], violates[s.points.front()]);
+}
+
+constexpr double kWidth_m = 2.8;
+
+/// A component that drives ahead, of points around some positions.
+struct Traffic {
+  SceneMotion scene;
+  MotionComponent component;
+  test::Noise noise{1};
+
+  void add(const Eigen::Vector3d& middle_cam, int count, double position_sigma_m = 0.05) {
+    for (int i = 0; i < count; ++i) {
+      SceneFlow flow;
+      flow.p_cam = middle_cam + noise.inBox({-1, -1, -2}, {1, 1, 2});
+      flow.velocity_mps = {0, 0, 12};
+      flow.covariance.setIdentity();
+      flow.covariance.topLeftCorner<3, 3>() *= position_sigma_m * position_sigma_m;
+      component.points.push_back(static_cast<int>(scene.points.size()));
+      scene.points.push_back({.point = {static_cast<std::int64_t>(scene.points.size())},
+                              .uvd_px = Eigen::Vector3d::Zero(),
+                              .sigma_px = Eigen::Vector3d::Ones(),
+                              .flow = flow});
+    }
+    component.velocity_mps = {0.5, 0, 12};
+  }
+  std::vector<MotionComponent> split() const { return splitAbreast(component, component.points, scene, kWidth_m); }
+};
+
+TEST(VehiclesAbreast, ThreeTrucksSideBySideAreThree) {
+  Traffic traffic;
+  const std::vector<Eigen::Vector3d> middles{{3.2, 0, 20}, {-3.2, 0, 12}, {0, 0, 19}};
+  for (const auto& middle : middles) traffic.add(middle, 60);
+  const auto vehicles = traffic.split();
+  ASSERT_EQ(vehicles.size(), 3U);
+  std::size_t points = 0;
+  for (const auto& vehicle : vehicles) {
+    EXPECT_EQ(vehicle.points.size(), 60U);
+    EXPECT_EQ(vehicle.velocity_mps, traffic.component.velocity_mps);
+    EXPECT_TRUE(std::ranges::any_of(middles, [&](const auto& m) { return (m - vehicle.centroid_cam).norm() < 0.6; }))
+        << vehicle.centroid_cam;
+    points += vehicle.points.size();
+  }
+  EXPECT_EQ(points, traffic.component.points.size());
+}
+
+TEST(VehiclesAbreast, ALongTruckIsOne) {
+  Traffic traffic;
+  for (const double z_m : {8.0, 12.0, 16.0}) traffic.add({-3, 0, z_m}, 20);
+  const auto vehicles = traffic.split();
+  ASSERT_EQ(vehicles.size(), 1U);
+  EXPECT_EQ(vehicles[0].points, traffic.component.points);
+}
+
+TEST(VehiclesAbreast, NoiseOfDistantPointsIsNoWidth) {
+  Traffic near, far;
+  for (auto* traffic : {&near, &far}) {
+    const double sigma_m = traffic == &far ? 1.0 : 0.05;
+    traffic->add({-1.2, 0, 50}, 10, sigma_m);
+    traffic->add({1.2, 0, 50}, 10, sigma_m);
+  }
+  EXPECT_EQ(near.split().size(), 2U);
+  EXPECT_EQ(far.split().size(), 1U);
+}
+
+TEST(VehiclesAbreast, NothingIsSplitOfNothing) {
+  const Traffic traffic;
+  EXPECT_TRUE(traffic.split().empty());
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
-#include "frontend/shape/disparity_refinement.hpp"
-
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "frontend/shape/dense_disparity.hpp"
 #include "tests/frontend/texture.hpp"
 
 namespace motorcade {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "frontend/image/image_pyramid.hpp"
-#include "frontend/tracking/instance_regions.hpp"
 #include "frontend/tracking/look_back.hpp"
+#include "frontend/tracking/region_flow.hpp"
 #include "tests/frontend/texture.hpp"
 #include "tests/support/noise.hpp"
 

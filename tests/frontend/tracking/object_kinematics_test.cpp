@@ -7,6 +7,7 @@
 #include "core/decompositions.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/noise.hpp"
+#include "tests/support/numeric_jacobian.hpp"
 
 namespace motorcade {
 namespace {
@@ -82,10 +83,7 @@ TEST(ObjectKinematics, PredictedCovarianceFollowsTheFiniteDifferencesOfTheMotion
     e << (k.pose().inverse() * moved).log(), x.tail<6>();
     return e;
   };
-  Matrix12d F;
-  constexpr double kStep = 1e-6;
-  for (int i = 0; i < 12; ++i)
-    F.col(i) = (error(kStep * Vector12d::Unit(i)) - error(-kStep * Vector12d::Unit(i))) / (2 * kStep);
+  const Matrix12d F = test::numericJacobian(error, Vector12d::Zero().eval());
   const Matrix12d expected = F * car.covariance * F.transpose();
   constexpr double kTol = 1e-8;  // of central differences, for entries below one
   EXPECT_THAT(k.poseCovariance(), IsNear(expected.topLeftCorner<6, 6>(), kTol));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "io/files/errors.hpp"
 #include "io/rig/rig_file.hpp"
@@ -136,6 +137,21 @@ TEST(CameraInfoMessage, ItsSizeIsHeldAgainstThatOfTheImages) {
   const Rig rig = rigOf(rectifiedInfos(), false);
   EXPECT_EQ(rectificationOf(rig, {1242, 375}).camera.width_px, 1242);
   EXPECT_THROW(rectificationOf(rig, {1241, 376}), InputError);
+}
+
+TEST(ImageTopics, TheCameraInfoLiesBesideTheImages) {
+  EXPECT_EQ(cameraInfoTopicOf("/stereo/left/image_raw"), "/stereo/left/camera_info");
+  EXPECT_EQ(cameraInfoTopicOf("/stereo/left/image_raw/compressed"), "/stereo/left/camera_info");
+  EXPECT_EQ(cameraInfoTopicOf("left"), "camera_info");
+  EXPECT_EQ(cameraInfoTopicOf("/left"), "/camera_info");
+}
+
+TEST(ImageTopics, TheNameTellsWhetherImagesAreRectified) {
+  EXPECT_TRUE(isRectifiedTopic("/left/image_rect"));
+  EXPECT_TRUE(isRectifiedTopic("/left/image_rect_color/compressed"));
+  EXPECT_TRUE(isRectifiedTopic("image_rect"));
+  EXPECT_FALSE(isRectifiedTopic("/left/image_raw"));
+  EXPECT_FALSE(isRectifiedTopic("/image_rect/image_raw"));
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 
 #include "io/files/errors.hpp"
 #include "io/layouts/layout_parts.hpp"
-#include "io/sequence/name_times.hpp"
-#include "io/sequence/numbering.hpp"
+#include "io/sequence/image_names.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {

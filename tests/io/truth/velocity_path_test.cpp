@@ -1,5 +1,3 @@
-#include "io/truth/velocity_path.hpp"
-
 #include <cmath>
 #include <numbers>
 
@@ -7,6 +5,7 @@
 
 #include "io/files/errors.hpp"
 #include "io/layouts/open_sequence.hpp"
+#include "io/truth/ground_truth.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/data_folder.hpp"
 #include "tests/support/matchers.hpp"

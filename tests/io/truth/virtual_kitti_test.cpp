@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "io/files/errors.hpp"
-#include "io/images/instance_image.hpp"
+#include "io/images/mask_image.hpp"
 #include "io/layouts/open_sequence.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/matchers.hpp"
