@@ -11,7 +11,7 @@ namespace {
 // From the least on, as in tables of kernels. Highway takes a processor without any of its targets for one without
 // vectors; but x86-64 has SSE2, and arm64 NEON.
 #if HWY_ARCH_X86
-constexpr std::array kNames{"SSE2", "SSE4", "AVX2"};
+constexpr std::array kNames{"SSE2", "SSE4", "AVX2", "AVX512"};
 
 int best() {
   __builtin_cpu_init();
@@ -19,10 +19,14 @@ int best() {
   if (!has(__builtin_cpu_supports("sse4.2") != 0, __builtin_cpu_supports("aes") != 0,
            __builtin_cpu_supports("pclmul") != 0))
     return 0;
-  return has(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0,
-             __builtin_cpu_supports("bmi") != 0, __builtin_cpu_supports("bmi2") != 0)
-             ? 2
-             : 1;
+  if (!has(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0, __builtin_cpu_supports("bmi") != 0,
+           __builtin_cpu_supports("bmi2") != 0))
+    return 1;
+  return has(__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512cd") != 0,
+             __builtin_cpu_supports("avx512vl") != 0, __builtin_cpu_supports("avx512dq") != 0,
+             __builtin_cpu_supports("avx512bw") != 0)
+             ? 3
+             : 2;
 }
 #else
 constexpr std::array kNames{"NEON"};

@@ -24,7 +24,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace motorcade::HWY_NAMESPACE {
 
-inline constexpr int kLaneBytes = 32, kPartBytes = HWY_TARGET == HWY_AVX2 ? 32 : 16, kParts = kLaneBytes / kPartBytes;
+inline constexpr int kLaneBytes = 32, kPartBytes = HWY_TARGET <= HWY_AVX2 ? 32 : 16, kParts = kLaneBytes / kPartBytes;
 
 /// Integers of a size, for masks: all bits are set, or none.
 template <class T>
@@ -138,7 +138,7 @@ HWY_INLINE double total(const Doubles& x) { return (x[0] + x[1]) + (x[2] + x[3])
 HWY_INLINE unsigned bitsOf(const FloatMask& mask) {
   unsigned bits = 0;
   for (int i = 0; i < kParts; ++i) {
-#if HWY_TARGET == HWY_AVX2
+#if HWY_TARGET <= HWY_AVX2
     bits = static_cast<unsigned>(_mm256_movemask_ps(__m256(mask.part[i])));
 #elif HWY_ARCH_X86
     bits |= static_cast<unsigned>(_mm_movemask_ps(__m128(mask.part[i]))) << 4 * i;

@@ -25,11 +25,13 @@ kernels_are() {  # WHICH COMMAND...: else the comparison would be one of equal p
 }
 
 name=here follow "$motorcade"
-if [[ $(instructions "$motorcade") != AVX2 ]]; then
+best=$(instructions "$motorcade")
+if [[ $best != AVX* ]]; then
   echo "skipped, as this processor has no AVX2"
   exit 0
 fi
-for lesser in SSE4 SSE2; do
+for lesser in AVX2 SSE4 SSE2; do
+  [[ $lesser != "$best" ]] || continue
   kernels_are $lesser env MOTORCADE_INSTRUCTIONS=$lesser "$motorcade"
   name=$lesser MOTORCADE_INSTRUCTIONS=$lesser follow "$motorcade"
   name=$lesser same

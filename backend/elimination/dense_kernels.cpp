@@ -4,7 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
+#define MOTORCADE_WIDE_KERNELS
 #include "core/instruction_set.hpp"
 
 #define HWY_TARGET_INCLUDE "backend/elimination/dense_kernels.cpp"
@@ -16,12 +18,41 @@ HWY_BEFORE_NAMESPACE();
 namespace motorcade::HWY_NAMESPACE {
 namespace {
 
-/// 12 x 4 tiles: 12 sums, 3 vectors of A and one of B fill the 16 registers. Of smaller registers, a vector takes two.
+/// Vectors of as many numbers as the longest registers hold, but at least four.
+#if HWY_TARGET <= HWY_AVX3
+typedef double Wide __attribute__((vector_size(64)));  // NOLINT(modernize-use-using): the attribute belongs to it
+#else
+using Wide = Vec;
+#endif
+template <class Vector>
+constexpr int kLanesOf = static_cast<int>(sizeof(Vector) / sizeof(double));
+
+/// Tiles of three vectors by four columns: 12 sums, 3 vectors of A and one of B fill the 16 registers. Of smaller
+/// registers, a vector takes two.
 constexpr int kTileVecs = 3, kTileVecsOfProduct = kParts == 1 ? kTileVecs : 1;
 /// Columns that an outer product takes at once: what stays in the first-level caches of data and pages.
 constexpr int kMaxDepth = 48;
 
 int vecsFor(int rows) { return (rows + kLanes - 1) / kLanes; }
+
+template <class Vector>
+HWY_INLINE Vector loadAs(const double* from) {
+  Vector vector;
+  __builtin_memcpy(&vector, from, sizeof(Vector));
+  return vector;
+}
+/// The first `count` numbers and zeros; reads nothing past them.
+template <class Vector>
+HWY_INLINE Vector loadFirstAs(const double* from, int count) {
+  if constexpr (std::is_same_v<Vector, Vec>) {
+    return loadFirst(from, count);
+  } else {
+    if (count >= kLanesOf<Vector>) return loadAs<Vector>(from);
+    double numbers[kLanesOf<Vector>]{};
+    for (int i = 0; i < count; ++i) numbers[i] = from[i];
+    return loadAs<Vector>(numbers);
+  }
+}
 
 /// Walks down `vecs` vectors of rows in tiles: `f.template operator()<height>(first)`. Four are two and two, as one
 /// alone makes the sums wait for each other.
@@ -34,28 +65,39 @@ template <int kMost, class F>
   for (; vecs > 0; --vecs, ++first) f.template operator()<1>(first);
 }
 
-/// 4V x N entries of a matrix, in registers.
-template <int V, int N>
+/// Walks down `vecs` vectors of four rows from a row on, in tiles of wide vectors and of what these leave over:
+/// `f.template operator()<Vector, height>(row)`.
+template <int kMost, class F>
+[[gnu::always_inline]] inline void forRows(int row, int vecs, const F& f) {
+  constexpr int kPerWide = kLanesOf<Wide> / kLanes;
+  forTiles<kMost>(0, vecs / kPerWide,
+                  [&]<int V>(int vec) HWY_ATTR { f.template operator()<Wide, V>(row + vec * kLanesOf<Wide>); });
+  if (kPerWide > 1 && vecs % kPerWide > 0) f.template operator()<Vec, 1>(row + (vecs - 1) * kLanes);
+}
+
+/// V vectors of rows by N columns of a matrix, in registers.
+template <class Vector, int V, int N>
 struct Tile {
-  Vec at[V][N];
+  static constexpr int kStep = kLanesOf<Vector>;
+  Vector at[V][N];
 
   [[gnu::always_inline]] void loadFrom(const double* m, int ld) {
 #pragma GCC unroll 4
     for (int n = 0; n < N; ++n)
 #pragma GCC unroll 4
-      for (int v = 0; v < V; ++v) at[v][n] = load(m + n * ld + v * kLanes);
+      for (int v = 0; v < V; ++v) at[v][n] = loadAs<Vector>(m + n * ld + v * kStep);
   }
   [[gnu::always_inline]] void storeTo(double* m, int ld) const {
 #pragma GCC unroll 4
     for (int n = 0; n < N; ++n)
 #pragma GCC unroll 4
-      for (int v = 0; v < V; ++v) store(m + n * ld + v * kLanes, at[v][n]);
+      for (int v = 0; v < V; ++v) __builtin_memcpy(m + n * ld + v * kStep, &at[v][n], sizeof(Vector));
   }
   /// Subtracts the outer product of a column with N scalars.
-  [[gnu::always_inline]] void subtract(const Vec (&column)[V], const double* scalars) {
+  [[gnu::always_inline]] void subtract(const Vector (&column)[V], const double* scalars) {
 #pragma GCC unroll 4
     for (int n = 0; n < N; ++n) {
-      const Vec scalar = broadcast(scalars[n]);
+      const double scalar = scalars[n];
 #pragma GCC unroll 4
       for (int v = 0; v < V; ++v) at[v][n] -= column[v] * scalar;
     }
@@ -63,9 +105,9 @@ struct Tile {
   /// Subtracts A B^T of k columns.
   [[gnu::always_inline]] void subtractProduct(const double* a, const double* b, int ld, int k) {
     for (; k > 0; --k, a += ld, b += ld) {
-      Vec column[V];
+      Vector column[V];
 #pragma GCC unroll 4
-      for (int v = 0; v < V; ++v) column[v] = load(a + v * kLanes);
+      for (int v = 0; v < V; ++v) column[v] = loadAs<Vector>(a + v * kStep);
       subtract(column, b);
     }
   }
@@ -81,7 +123,7 @@ struct Triangle {
   /// Right-looking elimination of the tile whose first N rows are the triangle. The pivot's reciprocal updates the
   /// remaining columns while its root is still being taken.
   template <int V>
-  [[gnu::always_inline]] void factorize(Tile<V, N>& tile, const double (&diagonal)[N]) {
+  [[gnu::always_inline]] void factorize(Tile<Vec, V, N>& tile, const double (&diagonal)[N]) {
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) {
       const double pivot = tile.at[0][c][c];
@@ -106,26 +148,26 @@ struct Triangle {
   }
 
   /// X = A L^-T for a tile of lower rows.
-  template <int V>
-  [[gnu::always_inline]] void solve(Tile<V, N>& tile) const {
+  template <class Vector, int V>
+  [[gnu::always_inline]] void solve(Tile<Vector, V, N>& tile) const {
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) {
 #pragma GCC unroll 4
       for (int v = 0; v < V; ++v) {
-        tile.at[v][c] *= broadcast(inverse[c]);
+        tile.at[v][c] *= inverse[c];
         if (inverse[c] == 0) [[unlikely]]
-          tile.at[v][c] = Vec{};
+          tile.at[v][c] = Vector{};
       }
 #pragma GCC unroll 4
       for (int r = c + 1; r < N; ++r)
 #pragma GCC unroll 4
-        for (int v = 0; v < V; ++v) tile.at[v][r] -= tile.at[v][c] * broadcast(below[c][r]);
+        for (int v = 0; v < V; ++v) tile.at[v][r] -= tile.at[v][c] * below[c][r];
     }
   }
 
  private:
   template <int V>
-  [[gnu::always_inline]] void clear(Tile<V, N>& tile, int c) {
+  [[gnu::always_inline]] void clear(Tile<Vec, V, N>& tile, int c) {
     for (int v = 0; v < V; ++v) tile.at[v][c] = Vec{};
     tile.at[0][c].set(c, 1);
     for (int r = c + 1; r < N; ++r) below[c][r] = 0;
@@ -139,19 +181,24 @@ double factorizeColumns(const Panel& panel, int first, std::vector<int>& singula
   const int ld = panel.ld, rows = panel.rows;
   double* const columns = panel.data + first * ld;
   Triangle<N> triangle;
-  // The first tile's rows are rounded otherwise than those of others: its height is the same for all instructions.
-  forTiles<kTileVecs>(0, vecsFor(rows - first), [&]<int V>(int vec) HWY_ATTR {
-    const int row = first + vec * kLanes;
-    Tile<V, N> tile;
+  const auto updated = [&]<class Vector, int V>(int row) HWY_ATTR {
+    Tile<Vector, V, N> tile;
     tile.loadFrom(columns + row, ld);
     tile.subtractProduct(panel.data + row, panel.data + first, ld, first);
-    if (vec == 0) {
-      double diagonal[N];
-      for (int c = 0; c < N; ++c) diagonal[c] = columns[first + c + c * ld];
-      triangle.factorize(tile, diagonal);
-    } else {
-      triangle.solve(tile);
-    }
+    return tile;
+  };
+  // The first tile's rows are rounded otherwise than those of others: its height is the same for all instructions.
+  const int vecs = vecsFor(rows - first), top = std::min(vecs, vecs == kTileVecs + 1 ? 2 : kTileVecs);
+  withConstant<kTileVecs>(top, [&]<int V>() HWY_ATTR {
+    auto tile = updated.template operator()<Vec, V>(first);
+    double diagonal[N];
+    for (int c = 0; c < N; ++c) diagonal[c] = columns[first + c + c * ld];
+    triangle.factorize(tile, diagonal);
+    tile.storeTo(columns + first, ld);
+  });
+  forRows<kTileVecs>(first + top * kLanes, vecs - top, [&]<class Vector, int V>(int row) HWY_ATTR {
+    auto tile = updated.template operator()<Vector, V>(row);
+    triangle.solve(tile);
     tile.storeTo(columns + row, ld);
   });
   for (int c = 0; c < N; ++c)
@@ -167,31 +214,36 @@ struct OuterProduct {
   int lda, n, k;
 
   /// One tile of C. The last column of A is loaded with care: past row n its buffer may end.
-  template <int V, int N>
+  template <class Vector, int V, int N>
   [[gnu::always_inline]] void subtractTile(int row, int column) const {
-    Tile<V, N> tile;
+    constexpr int kStep = kLanesOf<Vector>;
+    Tile<Vector, V, N> tile;
     tile.loadFrom(c + row + column * ldc, ldc);
     tile.subtractProduct(a + row, a + column, lda, k - 1);
     const double* const end = a + (k - 1) * lda;
-    Vec last[V];
+    Vector last[V];
 #pragma GCC unroll 4
-    for (int v = 0; v < V - 1; ++v) last[v] = load(end + row + v * kLanes);
-    const int bottom = row + (V - 1) * kLanes;
-    last[V - 1] = loadFirst(end + bottom, std::min(n - bottom, kLanes));
+    for (int v = 0; v < V - 1; ++v) last[v] = loadAs<Vector>(end + row + v * kStep);
+    const int bottom = row + (V - 1) * kStep;
+    last[V - 1] = loadFirstAs<Vector>(end + bottom, std::min(n - bottom, kStep));
     tile.subtract(last, end + column);
     tile.storeTo(c + row + column * ldc, ldc);
   }
 
   /// V vectors of rows of C from its first column to the diagonal; A's rows stay in the cache.
-  template <int V>
+  template <class Vector, int V>
   void subtractRows(int row) const {
-    for (int column = 0; column < row; column += kLanes) subtractTile<V, kLanes>(row, column);
-    subtractDiagonal<V>(row);
+    for (int column = 0; column < row; column += kLanes) subtractTile<Vector, V, kLanes>(row, column);
+    subtractDiagonal<V * kLanesOf<Vector> / kLanes>(row);
   }
 
+  /// The lower triangle of V vectors of four rows.
   template <int V>
   [[gnu::always_inline]] void subtractDiagonal(int row) const {
-    withConstant<kLanes>(std::min(n - row, kLanes), [&]<int N>() HWY_ATTR { subtractTile<V, N>(row, row); });
+    withConstant<kLanes>(std::min(n - row, kLanes), [&]<int N>() HWY_ATTR {
+      forTiles<kTileVecs>(
+          0, V, [&]<int kHeight>(int vec) HWY_ATTR { subtractTile<Vec, kHeight, N>(row + vec * kLanes, row); });
+    });
     if constexpr (V > 1) subtractDiagonal<V - 1>(row + kLanes);
   }
 };
@@ -239,8 +291,8 @@ void subtractProduct(double* c, int ldc, const double* a, int lda, int n, int k)
   for (int pass = 0; pass < passes; ++pass) {
     const int from = k * pass / passes, to = k * (pass + 1) / passes;
     const OuterProduct product{.c = c, .ldc = ldc, .a = a + from * lda, .lda = lda, .n = n, .k = to - from};
-    forTiles<kTileVecsOfProduct>(0, vecsFor(n),
-                                 [&]<int V>(int vec) HWY_ATTR { product.subtractRows<V>(vec * kLanes); });
+    forRows<kTileVecsOfProduct>(0, vecsFor(n),
+                                [&]<class Vector, int V>(int row) HWY_ATTR { product.subtractRows<Vector, V>(row); });
   }
 }
 

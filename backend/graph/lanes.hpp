@@ -18,7 +18,7 @@ HWY_INLINE Vec broadcast(double value) { return value; }
 HWY_INLINE double sum(const Vec& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 HWY_INLINE Vec four(double a, double b, double c, double d) {
   Vec v;
-#if HWY_TARGET == HWY_AVX2
+#if HWY_TARGET <= HWY_AVX2
   v.part[0] = Vec::Part{a, b, c, d};
 #else
   v.part[0] = Vec::Part{a, b}, v.part[1] = Vec::Part{c, d};
@@ -28,7 +28,7 @@ HWY_INLINE Vec four(double a, double b, double c, double d) {
 
 /// The rows of a 4 x 4 matrix become its columns.
 HWY_INLINE void transpose(Vec& a, Vec& b, Vec& c, Vec& d) {
-#if HWY_TARGET == HWY_AVX2
+#if HWY_TARGET <= HWY_AVX2
   const auto even = [](const Vec& x, const Vec& y)
                         HWY_ATTR { return __builtin_shufflevector(x.part[0], y.part[0], 0, 4, 2, 6); };
   const auto odd = [](const Vec& x, const Vec& y)

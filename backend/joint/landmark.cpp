@@ -22,21 +22,33 @@ constexpr int kPoseNumbers = 12;
 struct Lanes3 {
   Vec x, y, z;
 };
-Lanes3 operator*(const Lanes3& a, const Lanes3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+HWY_INLINE Lanes3 operator*(const Lanes3& a, const Lanes3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+HWY_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Four contiguous numbers of each of four views, the same number of all views in a vector.
+template <class Place>
+HWY_INLINE std::array<Vec, 4> loadFrom(const LandmarkView* const (&views)[kLanes], const Place& place) {
+  std::array<Vec, 4> numbers{load(place(*views[0])), load(place(*views[1])), load(place(*views[2])),
+                             load(place(*views[3]))};
+  transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
+  return numbers;
 }
 
 /// Up to four views with their poses; lanes without one repeat the last.
 class ViewLanes {
  public:
-  ViewLanes(std::span<const LandmarkView> views, const double* poses, std::size_t stride) {
+  HWY_INLINE ViewLanes(std::span<const LandmarkView> views, const double* poses) {
     const LandmarkView* of[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i) of[i] = &views[std::min(i, views.size() - 1)];
+    for (int k = 0; k < kPoseNumbers; k += 4) {
+      const auto numbers =
+          loadFrom(of, [&](const LandmarkView& v) HWY_ATTR { return poses + std::size_t(kPoseNumbers) * v.frame + k; });
+      for (int i = 0; i < 4; ++i) pose_[k + i] = numbers[i];
+    }
     const auto lanes = [&](const auto& value)
                            HWY_ATTR { return four(value(*of[0]), value(*of[1]), value(*of[2]), value(*of[3])); };
-    for (int k = 0; k < kPoseNumbers; ++k)
-      pose_[k] = lanes([&](const LandmarkView& v) HWY_ATTR { return poses[k * stride + v.frame]; });
     uvd_px = {lanes([](auto& v) HWY_ATTR { return v.uvd_px[0]; }), lanes([](auto& v) HWY_ATTR { return v.uvd_px[1]; }),
               lanes([](auto& v) HWY_ATTR { return v.uvd_px[2]; })};
     inverse_sigma = {lanes([](auto& v) HWY_ATTR { return v.inverse_sigma[0]; }),
@@ -44,18 +56,18 @@ class ViewLanes {
                      lanes([](auto& v) HWY_ATTR { return v.inverse_sigma[2]; })};
   }
 
-  Lanes3 rotated(const Eigen::Vector3d& v) const {
+  HWY_INLINE Lanes3 rotated(const Eigen::Vector3d& v) const {
     return {(pose_[0] * v.x() + pose_[3] * v.y()) + pose_[6] * v.z(),
             (pose_[1] * v.x() + pose_[4] * v.y()) + pose_[7] * v.z(),
             (pose_[2] * v.x() + pose_[5] * v.y()) + pose_[8] * v.z()};
   }
-  Lanes3 moved(const Eigen::Vector3d& p) const {
+  HWY_INLINE Lanes3 moved(const Eigen::Vector3d& p) const {
     const Lanes3 turned = rotated(p);
     return {turned.x + pose_[9], turned.y + pose_[10], turned.z + pose_[11]};
   }
 
   /// From the camera's axes to the body's.
-  Lanes3 turnedBack(const Lanes3& v) const {
+  HWY_INLINE Lanes3 turnedBack(const Lanes3& v) const {
     return {(pose_[0] * v.x + pose_[1] * v.y) + pose_[2] * v.z, (pose_[3] * v.x + pose_[4] * v.y) + pose_[5] * v.z,
             (pose_[6] * v.x + pose_[7] * v.y) + pose_[8] * v.z};
   }
@@ -66,24 +78,24 @@ class ViewLanes {
   Vec pose_[kPoseNumbers];  // the rotation column by column, and the translation
 };
 
-Vec rootWeights(const LandmarkNoise& noise, const Vec& squared_norm) {
-  Vec root;
-  for (int i = 0; i < kLanes; ++i)
-    root.set(i, std::sqrt(robustWeight(noise.loss, std::sqrt(squared_norm[i]), noise.loss_scale)));
-  return root;
+HWY_INLINE Vec rootWeights(const LandmarkNoise& noise, const Vec& squared_norm) {
+  double norms[kLanes], weights[kLanes];
+  HWY_NAMESPACE::store(norms, squareRoots(squared_norm));
+  for (int i = 0; i < kLanes; ++i) weights[i] = robustWeight(noise.loss, norms[i], noise.loss_scale);
+  return squareRoots(load(weights));
 }
 
 /// Where in a linear model four contiguous numbers are.
-auto bRow(int row) {
+HWY_INLINE auto bRow(int row) {
   return [=](LinearView& linear) HWY_ATTR { return linear.B.data() + 4 * row; };
 }
-auto jRow(int row, int column = 0) {
+HWY_INLINE auto jRow(int row, int column = 0) {
   return [=](LinearView& linear) HWY_ATTR { return linear.J.data() + 8 * row + column; };
 }
 
 /// Four numbers of each of four models.
 template <class Place>
-void storeInto(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
+HWY_INLINE void storeInto(std::array<Vec, 4> numbers, LinearView* linear, const Place& place) {
   transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
   for (int i = 0; i < kLanes; ++i) HWY_NAMESPACE::store(place(linear[i]), numbers[i]);
 }
@@ -91,13 +103,13 @@ void storeInto(std::array<Vec, 4> numbers, LinearView* linear, const Place& plac
 /// How a number that changes with a point seen from the camera changes with steps of the frame's pose.
 class PoseSteps {
  public:
-  PoseSteps(const ViewLanes& view, FramePose pose, const Eigen::Vector3d& p_body, const Lanes3& p_cam)
+  HWY_INLINE PoseSteps(const ViewLanes& view, FramePose pose, const Eigen::Vector3d& p_body, const Lanes3& p_cam)
       : view_(view),
         moves_camera_(pose == FramePose::kWorldCam),
         lever_(moves_camera_ ? view.turnedBack(p_cam) : view.rotated(p_body)) {}
 
   /// By the pose's origin, and by its turn about that.
-  std::array<Lanes3, 2> operator()(const Lanes3& by_p_cam) const {
+  HWY_INLINE std::array<Lanes3, 2> operator()(const Lanes3& by_p_cam) const {
     if (!moves_camera_) return {by_p_cam, cross(lever_, by_p_cam)};
     const Lanes3 m = view_.turnedBack(by_p_cam), by_origin{-m.x, -m.y, -m.z};
     return {by_origin, cross(lever_, by_origin)};
@@ -118,7 +130,7 @@ HWY_INLINE void storeByPose(const std::array<Lanes3, 2>& by_steps, const std::ar
 }
 
 /// V += B' B, g += B' r.
-void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d& g) {
+HWY_INLINE void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d& g) {
   Vec sum = load(g.data());
   for (const LinearView& l : views) {
     addOuterProducts(l.B, l.B, V);
@@ -130,7 +142,7 @@ void addNormalEquations(std::span<const LinearView> views, Matrix4d& V, Vector4d
 /// Up to four views in the lanes of vectors; what lanes without a view hold is not used. False where the landmark lies
 /// behind a camera.
 bool linearizeFour(std::span<const LandmarkView> views, LandmarkFit::Linearization& at, LinearView* linear) {
-  const ViewLanes view(views, at.poses.data(), at.poses.size() / kPoseNumbers);
+  const ViewLanes view(views, at.poses.data());
   const Lanes3 p = view.moved(at.p_body);
   const StereoCamera& camera = at.camera;
   for (std::size_t i = 0; i < views.size(); ++i)
@@ -193,17 +205,12 @@ double LandmarkNoise::meanSquare() const {
 
 LandmarkFit::LandmarkFit(const StereoCamera& camera, const LandmarkNoise& noise, FramePose pose,
                          std::span<const SE3> T_cam_body, double offset_px)
-    : camera_(camera),
-      noise_(noise),
-      pose_(pose),
-      T_cam_body_(T_cam_body),
-      offset_px_(offset_px),
-      stride_(T_cam_body.size()) {
-  poses_.resize(HWY_NAMESPACE::kPoseNumbers * stride_);
-  for (std::size_t frame = 0; frame < stride_; ++frame)
-    for (int k = 0; k < HWY_NAMESPACE::kPoseNumbers; ++k)
-      poses_[k * stride_ + frame] =
-          k < 9 ? T_cam_body[frame].rotation().data()[k] : T_cam_body[frame].translation()[k - 9];
+    : camera_(camera), noise_(noise), pose_(pose), T_cam_body_(T_cam_body), offset_px_(offset_px) {
+  poses_.reserve(HWY_NAMESPACE::kPoseNumbers * T_cam_body.size());
+  for (const SE3& T : T_cam_body) {
+    poses_.insert(poses_.end(), T.rotation().data(), T.rotation().data() + T.rotation().size());
+    poses_.insert(poses_.end(), T.translation().begin(), T.translation().end());
+  }
 }
 
 /// From an estimate until it moves no more; from the newest view, one step: what is left, the elimination takes into

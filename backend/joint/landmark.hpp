@@ -98,7 +98,7 @@ class LandmarkFit {
     const StereoCamera& camera;
     const LandmarkNoise& noise;
     FramePose pose;
-    std::span<const double> poses;  // T_cam_body of all frames, number by number, so that four are loaded at a time
+    std::span<const double> poses;  // T_cam_body of all frames, one after the other: rotation by columns, translation
     double offset_px, variance;
     Eigen::Vector3d p_body;
     Eigen::Matrix3d G;  // d(p_body) / d(u, v, d of the newest view)
@@ -119,7 +119,6 @@ class LandmarkFit {
   std::span<const SE3> T_cam_body_;
   double offset_px_;
   std::vector<double> poses_;
-  std::size_t stride_ = 0;
   int newest_frame_ = 0;
   Vector4d landmark_, gradient_;
   Matrix4d V_;

@@ -16,9 +16,9 @@ namespace motorcade::HWY_NAMESPACE {
 
 /// sum += a' b of matrices of three rows, as sums of outer products; with `kLower` at least its lower triangle.
 template <bool kLower = false, int Rows, int Cols>
-inline void addOuterProducts(const Eigen::Matrix<double, 3, Rows, Eigen::RowMajor>& a,
-                             const Eigen::Matrix<double, 3, Cols, Eigen::RowMajor>& b,
-                             Eigen::Matrix<double, Rows, Cols>& sum) {
+HWY_INLINE void addOuterProducts(const Eigen::Matrix<double, 3, Rows, Eigen::RowMajor>& a,
+                                 const Eigen::Matrix<double, 3, Cols, Eigen::RowMajor>& b,
+                                 Eigen::Matrix<double, Rows, Cols>& sum) {
   static_assert(Rows % kLanes == 0);
   constexpr int kVectors = Rows / kLanes;
   Vec of_a[3][kVectors];
@@ -34,8 +34,8 @@ inline void addOuterProducts(const Eigen::Matrix<double, 3, Rows, Eigen::RowMajo
 }
 
 /// a b.
-inline Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rowProduct(const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>& a,
-                                                               const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>& b) {
+HWY_INLINE Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rowProduct(
+    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>& a, const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>& b) {
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> product;
   Vec of_b[4];
   for (int k = 0; k < 4; ++k) of_b[k] = load(b.data() + 4 * k);
@@ -46,7 +46,7 @@ inline Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rowProduct(const Eigen::Matr
 }
 
 /// L^-T of a lower triangle L, row by row.
-inline Eigen::Matrix<double, 4, 4, Eigen::RowMajor> inverseTransposed(const Eigen::Matrix<double, 4, 4>& L) {
+HWY_INLINE Eigen::Matrix<double, 4, 4, Eigen::RowMajor> inverseTransposed(const Eigen::Matrix<double, 4, 4>& L) {
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> inverse = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>::Zero();
   for (int i = 0; i < 4; ++i) inverse(i, i) = 1 / L(i, i);
   for (int j = 0; j < 4; ++j)

@@ -24,10 +24,10 @@ constexpr int kIterationsWithOutliers = 2;
 constexpr int kMinObservations = 3;  // that determine the six degrees of freedom with some redundancy
 constexpr double kMaxStep = 100;     // norm of an increment (m, rad) beyond which the fit diverges
 
-Doubles3 load3(const std::array<PoseObservations::Block::Four, 3>& numbers) {
+HWY_INLINE Doubles3 load3(const std::array<PoseObservations::Block::Four, 3>& numbers) {
   return {load(numbers[0].data()), load(numbers[1].data()), load(numbers[2].data())};
 }
-SymmetricDoubles3x3 loadSymmetric(const std::array<PoseObservations::Block::Four, 6>& numbers) {
+HWY_INLINE SymmetricDoubles3x3 loadSymmetric(const std::array<PoseObservations::Block::Four, 6>& numbers) {
   return {load(numbers[0].data()), load(numbers[1].data()), load(numbers[2].data()),
           load(numbers[3].data()), load(numbers[4].data()), load(numbers[5].data())};
 }
@@ -45,13 +45,14 @@ struct LinearizedBlock {
   Doubles3 residual_px, weighted_residual;
   SymmetricDoubles3x3 information;
   /// Infinite where a point is so far away that rounding leaves no covariance.
-  Doubles chi2() const {
+  HWY_INLINE Doubles chi2() const {
     const Doubles sum = dot(residual_px, weighted_residual);
     return choose(sum >= 0.0, sum, kInfinity);
   }
 };
 
-LinearizedBlock linearize(const StereoCamera& camera, const PoseObservations::Block& o, const PoseLanes& T_cam_ref) {
+HWY_INLINE LinearizedBlock linearize(const StereoCamera& camera, const PoseObservations::Block& o,
+                                     const PoseLanes& T_cam_ref) {
   LinearizedBlock l;
   l.view = viewPoints(camera, T_cam_ref.R, T_cam_ref.t_m, load3(o.p_ref));
   const Doubles3x3& J = l.view.J;
@@ -80,7 +81,7 @@ struct LaneEquations {
   Doubles3 b_t{}, b_r{};
   Doubles chi2{}, inliers{};
 
-  void add(const PoseObservations::Block& o, const LinearizedBlock& l, double gate, double huber_sigmas) {
+  HWY_INLINE void add(const PoseObservations::Block& o, const LinearizedBlock& l, double gate, double huber_sigmas) {
     const Doubles known_px = l.chi2();
     const auto is_in = known_px < gate;
     const Doubles counts = choose(is_in, load(o.count.data()) * l.view.ahead, 0.0),

@@ -19,8 +19,8 @@ struct StereoViews {
 };
 
 /// Projects the points `p_ref_m`, which `R_cam_ref` and `t_cam_ref_m` take to the camera's frame.
-inline StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_ref, const Doubles3& t_cam_ref_m,
-                              const Doubles3& p_ref_m) {
+HWY_INLINE StereoViews viewPoints(const StereoCamera& camera, const Doubles3x3& R_cam_ref, const Doubles3& t_cam_ref_m,
+                                  const Doubles3& p_ref_m) {
   const Doubles3 p = R_cam_ref * p_ref_m + t_cam_ref_m;
   const auto is_ahead = p.z >= StereoCamera::kMinDepth_m;
   const Doubles one = 1.0, iz = one / choose(is_ahead, p.z, one);
@@ -36,7 +36,7 @@ struct HuberLoss {
   Doubles weight;  // rho'(r) / r
   Doubles chi2;    // 2 rho(r): the squared residual itself in the quadratic part
 };
-inline HuberLoss huberLoss(const Doubles& chi2, double huber_sigmas) {
+HWY_INLINE HuberLoss huberLoss(const Doubles& chi2, double huber_sigmas) {
   const Doubles k = huber_sigmas, norm = squareRoots(chi2);
   const auto quadratic = norm <= k;
   return {choose(quadratic, 1.0, k / norm), choose(quadratic, chi2, 2 * k * norm - k * k)};

@@ -34,9 +34,11 @@ TEST_F(InstructionSet, IsTheLeastIfTheEnvironmentWantsAny) {
 
 TEST_F(InstructionSet, IsTheOneThatTheEnvironmentWants) {
   const std::string best = instructionSet();
-  if (best != "AVX2") GTEST_SKIP() << "this processor has no other than " << best;
-  choose("SSE4");
-  EXPECT_EQ(instructionSet(), "SSE4");
+  if (!best.starts_with("AVX")) GTEST_SKIP() << "this processor has no other than " << best;
+  for (const char* const lesser : {"SSE4", "AVX2"}) {
+    choose(lesser);
+    EXPECT_EQ(instructionSet(), lesser);
+  }
 }
 
 TEST_F(InstructionSet, WithAnUnknownNameTellsTheKnownOnes) {

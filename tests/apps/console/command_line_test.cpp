@@ -72,7 +72,7 @@ TEST_F(CommandLine, TheVersionTellsHowItWasBuiltAndOfWhat) {
   for (const char* const part :
        {"build", "compiler", "instruction_set", "onetbb", "eigen", "opencv", "libpng", "jpeg", "cli11", "spdlog"})
     EXPECT_THAT(version, HasSubstr(part));
-  EXPECT_THAT(version, testing::ContainsRegex("instruction_set +(AVX2|SSE4|SSE2|NEON|any)\n"));
+  EXPECT_THAT(version, testing::ContainsRegex("instruction_set +(AVX512|AVX2|SSE4|SSE2|NEON|any)\n"));
 }
 
 TEST_F(CommandLine, TheSummaryHasTheSameVersions) {

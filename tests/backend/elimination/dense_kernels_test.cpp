@@ -1,10 +1,12 @@
 #include "backend/elimination/dense_kernels.hpp"
 
+#include <cstdlib>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/instruction_set.hpp"
 #include "tests/backend/random_panels.hpp"
 
 namespace motorcade {
@@ -140,6 +142,35 @@ TEST(DenseKernels, JacobianProductAddsTheLowerTriangle) {
     }
   }
 }
+
+#if HWY_ARCH_X86
+/// A panel's factor and what it leaves on the rest, by kernels for these instructions.
+std::vector<MatrixXd> eliminatedBy(const char* instructions, const test::Elimination& elimination) {
+  setenv("MOTORCADE_INSTRUCTIONS", instructions, 1);
+  chooseInstructions();
+  const int columns = elimination.columns, rest = elimination.rows() - columns;
+  PaddedMatrix panel(elimination.panel()), update(elimination.whole.bottomRightCorner(rest, rest));
+  std::vector<int> singular;
+  factorizePanel(panel.panel(), singular);
+  subtractOuterProduct(update.data(), update.ld(), panel.data() + columns, panel.ld(), rest, columns);
+  EXPECT_TRUE(panel.intactAround() && update.intactAround());
+  unsetenv("MOTORCADE_INSTRUCTIONS");
+  chooseInstructions();
+  return {panel.lower(), update.lower()};
+}
+
+TEST(DenseKernels, EveryInstructionSetGivesTheSameBits) {
+  std::mt19937 random(23);
+  for (const int columns : {1, 3, 6, 18, 50}) {
+    for (int below = 1; below <= 60; ++below) {
+      const test::Elimination elimination(columns + below, columns, random);
+      const auto least = eliminatedBy("SSE2", elimination);
+      for (const char* const better : {"SSE4", "AVX2", "AVX512"})
+        ASSERT_EQ(eliminatedBy(better, elimination), least) << better << ": " << columns << " and " << below;
+    }
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace motorcade
