@@ -80,7 +80,7 @@ done
 {
   echo "# Robustness"
   echo
-  echo "This page shows what each fault does to the results. \`perf/robustness.sh --gaps $gaps --seeds $seeds\` writes this page."
+  echo "This page shows what each fault does to the results. \`perf/robustness.sh --gaps $gaps --seeds $seeds\` writes this page. It did so on $(LC_ALL=C date '+%-d %B %Y')."
   echo
   echo "* *ATE* is the absolute trajectory error of the camera's final path. *times clean* compares it with the same drive without faults."
   echo "* *recall* is that of moving objects to 30 m."
@@ -91,7 +91,7 @@ done
   head_of
   row "none" "seed=1"
   for n in 1 3 5 8 10 15; do row "$n missing" "drop@30:$((30 + n))"; done
-  for n in 1 3 10; do row "$n black" "black@30:$((30 + n))"; done
+  for n in 1 3 10 20; do row "$n black" "black@30:$((30 + n))"; done
   row "3 white" "white@30:33"
   row "3 damaged" "truncated@30:33"
   row "3 with bits turned" "bitflips=20@30:33"
