@@ -1,6 +1,7 @@
 #include "apps/pipeline/pipeline_params.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace motorcade {
 

@@ -1,6 +1,7 @@
 #include "apps/run/run_input.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <functional>
 #include <string>

@@ -25,7 +25,7 @@ nav_msgs_msg_dds__Odometry_ ddsView(const ros::Odometry& message);
 template <class Message, class Item, class Part>
 struct DdsListView {
   explicit DdsListView(std::size_t count) : parts(count) { items.reserve(count); }
-  DdsListView(DdsListView&&) = default;  // lists stay where they are
+  DdsListView(DdsListView&&) noexcept = default;  // lists stay where they are
 
   std::vector<std::vector<Part>> parts;  // of each item
   std::vector<Item> items{};
