@@ -10,17 +10,6 @@ void clearLowerTriangle(double* matrix, int stride, int columns) {
   for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
 }
 
-/// Adds scalars, mostly the six or three of a pose.
-inline void addTo(double* to, const double* from, int count) {
-  if (count == 6) {
-    for (int i = 0; i < 6; ++i) to[i] += from[i];
-  } else if (count == 3) {
-    for (int i = 0; i < 3; ++i) to[i] += from[i];
-  } else {
-    for (int i = 0; i < count; ++i) to[i] += from[i];
-  }
-}
-
 }  // namespace
 
 double Front::eliminate(Clique& clique) {
@@ -42,8 +31,7 @@ void Front::makeUpdateMatrix(Clique& clique) {
 }
 
 void Front::gather(const Clique& clique, double* panel) {
-  panel_ = panel;
-  begin(clique);
+  begin(clique, panel);
   for (const FactorId f : clique.factors) addFactor(clique, f);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) addChild(clique, tree_[child]);
 }
@@ -55,13 +43,18 @@ void Front::subtractEliminated(const Clique& clique) {
 }
 
 /// Begins an empty front of the clique's size.
-void Front::begin(const Clique& clique) {
+void Front::begin(const Clique& clique, double* panel) {
   update_size_ = clique.separatorSize() + 1;
   update_stride_ = padded(update_size_);
   const std::size_t length = std::size_t(update_stride_) * update_size_;
   if (update_matrix_.size() < length) update_matrix_.resize(length);
-  clearLowerTriangle(panel_, clique.panelStride(), clique.frontal_size);
+  clearLowerTriangle(panel, clique.panelStride(), clique.frontal_size);
   clearLowerTriangle(update_matrix_.data(), update_stride_, update_size_);
+  columns_ = {.panel = panel,
+              .panel_stride = clique.panelStride(),
+              .panel_columns = clique.frontal_size,
+              .update_matrix = update_matrix_.data(),
+              .update_stride = update_stride_};
   offset_.resize(graph_.slots());
   int at = 0;
   for (const VariableId v : clique.variables) {
@@ -80,10 +73,9 @@ void Front::addFactor(const Clique& clique, FactorId id) {
   const LinearModels& models = graph_.models();
   if (!models.isJacobian(id)) {
     const auto information = models.information(id);
-    addSymmetric(
-        clique, [&](int j) { return information.H.column(j); }, spans_);
+    addToFront(columns_, information.H, spans_);
     addRightHandSide(clique, information.g_c.data());
-    column(clique, clique.size)[clique.size] += information.c();
+    columns_[clique.size][clique.size] += information.c();
     return;
   }
   spans_.push_back({from, clique.size, 1});
@@ -91,8 +83,7 @@ void Front::addFactor(const Clique& clique, FactorId id) {
   const int columns = static_cast<int>(term.cols()), stride = padded(columns);
   product_.assign(columns * stride, 0.0);
   addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
-  addSymmetric(
-      clique, [&](int j) { return product_.data() + j * stride; }, spans_);
+  addToFront(columns_, product_.data(), stride, spans_);
 }
 
 void Front::addChild(const Clique& clique, const Clique& child) {
@@ -108,15 +99,14 @@ void Front::addChild(const Clique& clique, const Clique& child) {
     from += size;
   }
   splitAtFrontals(clique.frontal_size);
-  addSymmetric(
-      clique, [&](int j) { return child.updateMatrix().column(j); }, spans_);
+  addToFront(columns_, child.updateMatrix(), spans_);
   addRightHandSide(clique, child.contribution);  // which holds it when it changed alone
 }
 
 /// Adds g at the scalars in `spans_`.
 void Front::addRightHandSide(const Clique& clique, const double* g) {
   for (const RowSpan& span : spans_)
-    for (int i = 0; i < span.size; ++i) column(clique, span.to + i)[clique.size] += g[span.from + i];
+    for (int i = 0; i < span.size; ++i) columns_[span.to + i][clique.size] += g[span.from + i];
 }
 
 /// Splits spans at the border between panel and update matrix, which no span may cross.
@@ -130,32 +120,6 @@ void Front::splitAtFrontals(int frontal_size) {
     spans_.insert(spans_.begin() + i + 1, rest);
     return;
   }
-}
-
-/// Adds the lower triangle of a small symmetric matrix whose rows are given in spans; `source` gives its columns.
-template <class ColumnOf>
-void Front::addSymmetric(const Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans) {
-  for (std::size_t b = 0; b < spans.size(); ++b) {
-    const RowSpan columns = spans[b];
-    const std::span<const RowSpan> below = spans.subspan(b + 1);
-    for (int j = 0; j < columns.size; ++j) {
-      const double* from = source(columns.from + j);
-      double* to = column(clique, columns.to + j);
-      addTo(to + columns.to + j, from + columns.from + j, columns.size - j);
-      const auto addTransposed = [&](const RowSpan& rows) {  // what lies above the diagonal
-        for (int i = 0; i < rows.size; ++i) column(clique, rows.to + i)[columns.to + j] += from[rows.from + i];
-      };
-      for (const RowSpan& rows : below)
-        rows.to > columns.to ? addTo(to + rows.to, from + rows.from, rows.size) : addTransposed(rows);
-    }
-  }
-}
-
-/// Returns a column of the front's lower triangle, indexed by row.
-double* Front::column(const Clique& clique, int column) {
-  const int n = clique.frontal_size;
-  if (column < n) return panel_ + column * clique.panelStride();
-  return update_matrix_.data() + (column - n) * update_stride_ - n;
 }
 
 void Front::packUpdateMatrix(Clique& clique) const {

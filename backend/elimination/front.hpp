@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "backend/elimination/elimination_tree.hpp"
+#include "backend/elimination/front_sums.hpp"
 #include "backend/graph/factor_graph.hpp"
 
 namespace motorcade {
@@ -24,19 +25,12 @@ class Front {
   Eigen::MatrixXd schurComplement() const;
 
  private:
-  struct RowSpan {
-    int from, to, size;  // scalars from `from` of a small matrix go to `to` of the front
-  };
-
   void gather(const Clique& clique, double* panel);
-  void begin(const Clique& clique);
+  void begin(const Clique& clique, double* panel);
   void addFactor(const Clique& clique, FactorId id);
   void addChild(const Clique& clique, const Clique& child);
   void addRightHandSide(const Clique& clique, const double* g);
-  template <class ColumnOf>
-  void addSymmetric(const Clique& clique, const ColumnOf& source, std::span<const RowSpan> spans);
   void splitAtFrontals(int frontal_size);
-  double* column(const Clique& clique, int column);
   void subtractEliminated(const Clique& clique);
   void packUpdateMatrix(Clique& clique) const;
   void packContribution(Clique& clique) const;
@@ -47,7 +41,7 @@ class Front {
   std::vector<int> offset_;  // per variable: its first scalar in the front at hand
   std::vector<RowSpan> spans_;
   std::vector<double> product_;
-  double* panel_ = nullptr;  // of the front at hand: the clique's, or one that is not needed
+  FrontColumns columns_{};  // of the front at hand; its panel is the clique's, or one that is not needed
   std::vector<double, Eigen::aligned_allocator<double>> unneeded_panel_;
   /// [H g; g^T c] on the separator, until it is packed.
   std::vector<double, Eigen::aligned_allocator<double>> update_matrix_;

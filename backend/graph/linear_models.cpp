@@ -35,6 +35,21 @@ void turnToWorldAxes(const VariableStates& states, std::span<const VariableId> v
 
 using Column = Eigen::Map<Eigen::VectorXd>;
 
+/// r -= J x. The compiler keeps the sums of poses' six or three rows in registers.
+template <int kRows>
+void subtractProduct(const double* J, std::span<const double> x, double* r) {
+  double sums[kRows]{};
+  for (const double number : x)
+    for (int row = 0; row < kRows; ++row) sums[row] += *J++ * number;
+  for (int row = 0; row < kRows; ++row) r[row] -= sums[row];
+}
+void subtractProduct(const LinearModels::Term& model, std::span<const double> x, double* r) {
+  if (model.rows() == 6) return subtractProduct<6>(model.data(), x, r);
+  if (model.rows() == 3) return subtractProduct<3>(model.data(), x, r);
+  const auto size = static_cast<Eigen::Index>(x.size());
+  Column(r, model.rows()).noalias() -= model.leftCols(size) * Eigen::Map<const Eigen::VectorXd>(x.data(), size);
+}
+
 /// True when all entries are finite and small enough to square, as the elimination does.
 bool canBeSquared(std::span<const double> numbers) {
   double sum = 0;
@@ -87,18 +102,17 @@ double LinearModels::rmsResidual() const {
 }
 
 std::span<const Value* const> LinearModels::valuesOf(const Factor& factor, Value VariableState::*member) {
-  values_.clear();
-  for (const VariableId v : factor.variables()) values_.push_back(&(states_[v].*member));
+  values_.resize(factor.variables().size());
+  std::ranges::transform(factor.variables(), values_.begin(), [&](VariableId v) { return &(states_[v].*member); });
   return values_;
 }
 
 /// Stacks the coordinates of the factor's variables at the applied estimates, in `coordinates_`.
 Column LinearModels::appliedCoordinates(const Factor& factor) {
-  coordinates_.clear();
-  for (const VariableId v : factor.variables()) {
-    const VariableState& state = states_[v];
-    coordinates_.insert(coordinates_.end(), state.x_applied.begin(), state.x_applied.begin() + state.size);
-  }
+  coordinates_.resize(factor.variables().size() * VariableState::kMaxDimension);
+  double* end = coordinates_.data();
+  for (const VariableId v : factor.variables()) end = std::copy_n(states_[v].x_applied.begin(), states_[v].size, end);
+  coordinates_.resize(static_cast<std::size_t>(end - coordinates_.data()));
   return {coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size())};
 }
 
@@ -132,8 +146,8 @@ bool LinearModels::linearizeResidual(Slot& slot) {
   turnToWorldAxes(states_, factor.variables(), fresh);
   if (!canBeSquared(matrix_)) return false;
   setCost(slot, fresh.rightCols<1>().squaredNorm());
-  const Column x = appliedCoordinates(factor);
-  fresh.rightCols<1>().noalias() -= fresh.leftCols(x.size()) * x;
+  appliedCoordinates(factor);
+  subtractProduct(fresh, coordinates_, fresh.rightCols<1>().data());
   if (!slot.term) slot.term = terms_.take(matrix_.size());
   std::ranges::copy(matrix_, slot.term);
   return true;
@@ -185,9 +199,9 @@ LinearModels::Mismatch LinearModels::mismatch(FactorId id) {
   Column r(residual_.data(), factor.rows());
   factor.residual(valuesOf(factor, &VariableState::applied_estimate), r);
   setCost(slots_[id.value], r.squaredNorm());
-  const Column x = appliedCoordinates(factor);
-  r -= model.col(x.size());
-  r.noalias() -= model.leftCols(x.size()) * x;
+  appliedCoordinates(factor);
+  r -= model.rightCols<1>();
+  subtractProduct(model, coordinates_, r.data());
   return {.norm = r.norm(), .r = residual_};
 }
 

@@ -56,10 +56,11 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 void BackSubstitution::solve(const Clique& clique, Solution since, double threshold_sigmas) {
   ++newest_;
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
-  x_separator_.clear();
+  x_separator_.resize(clique.separatorSize());
+  double* end = x_separator_.data();
   for (const VariableId v : clique.separator()) {
-    const auto& x = graph_.states()[v].x;
-    x_separator_.insert(x_separator_.end(), x.begin(), x.begin() + graph_.sizeOf(v));
+    const VariableState& state = graph_.states()[v];
+    end = std::copy_n(state.x.begin(), state.size, end);
   }
   x_frontal_.resize(clique.frontal_size);
   backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());
@@ -82,6 +83,7 @@ void BackSubstitution::putOff(const Clique& clique, Solution since) {
 }
 
 bool BackSubstitution::hasFollowed(FactorId factor) const {
+  if (first_waiting_ == waiting_.size()) return true;  // no clique waits
   const auto variables = graph_.variablesOf(factor);
   const VariableId last = tree_[tree_.ownerOf(variables)].frontalVariables().front();
   return std::ranges::all_of(variables, [&](VariableId v) { return moved_by_[v.value] <= solved_by_[last.value]; });

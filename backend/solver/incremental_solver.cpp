@@ -83,11 +83,7 @@ void IncrementalSolver::removeFactor(FactorId id) {
 }
 
 void IncrementalSolver::beginReport() {
-  std::vector<VariableId> moved = std::move(report_.moved);
-  moved.clear();
-  report_ = {.problems = std::move(refused_),
-             .moved = std::move(moved),
-             .eliminated_scalars = -eliminator_.eliminatedScalars()};
+  report_ = {.problems = std::move(refused_), .eliminated_scalars = -eliminator_.eliminatedScalars()};
   refused_.clear();
   eliminator_.resetWeakestPivot();
   budget_.beginUpdate();
@@ -97,7 +93,6 @@ void IncrementalSolver::note(const Step& step) {
   report_.relinearized_variables += step.corrections.relinearized_variables;
   report_.relinearized_factors += step.corrections.relinearized_factors;
   report_.corrected_factors += step.corrections.corrected_factors;
-  report_.moved.insert(report_.moved.end(), step.solved.moved.begin(), step.solved.moved.end());
   report_.substituted_scalars += step.solved.scalars;
   report_.largest_change = std::max(report_.largest_change, step.solved.largest_change);
   if (step.of_all) ++counters_.reorderings, ++counters_.batch_solves;
@@ -111,7 +106,6 @@ void IncrementalSolver::endReport() {
   report_.waiting_chi2 = waiting_.chi2();
   report_.waiting_scalars = substitution_.waitingScalars();
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
-  sortUnique(report_.moved);
   problems_.append(graph_, tree_, eliminator_.weakestPivot(), report_.problems);
   changes_.clear();
 }

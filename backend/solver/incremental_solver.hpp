@@ -50,7 +50,6 @@ class IncrementalSolver {
   };
   struct Report {
     std::vector<SolverProblem> problems;
-    std::vector<VariableId> moved;  // whose estimates changed by more than the substitution threshold
     std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "backend/graph/packed_triangle.hpp"
+
+namespace motorcade {
+
+/// A front's lower triangle in memory: the columns of the panel, then those of the update matrix. The strides are the
+/// leading dimensions.
+struct FrontColumns {
+  double* panel;
+  int panel_stride, panel_columns;
+  double* update_matrix;
+  int update_stride;
+
+  /// A column, indexed by rows of the front from the diagonal on.
+  double* operator[](int column) const {
+    if (column < panel_columns) return panel + std::ptrdiff_t(column) * panel_stride;
+    return update_matrix + std::ptrdiff_t(column - panel_columns) * update_stride - panel_columns;
+  }
+};
+
+/// Rows of a small symmetric matrix, from `from` on, that are rows of a front from `to` on.
+struct RowSpan {
+  int from, to, size;
+};
+
+/// Adds a small symmetric matrix, of which the lower triangle is read, to the front's lower triangle. The spans say
+/// where its rows are, in ascending order of `from`; none crosses the border between panel and update matrix.
+void addToFront(const FrontColumns& front, const PackedTriangle& matrix, std::span<const RowSpan> spans);
+/// The same for a matrix with `stride` numbers from column to column.
+void addToFront(const FrontColumns& front, const double* matrix, int stride, std::span<const RowSpan> spans);
+
+}  // namespace motorcade
