@@ -73,7 +73,7 @@ long raceOfStage() {
   std::jthread producer([&pipeline] {
     for (std::int64_t i = 0; i < 200; ++i) {
       StereoFrame frame;
-      frame.stamp = {100'000'000 * i};
+      frame.head.stamp = {100'000'000 * i};
       pipeline.push(std::move(frame));
     }
     pipeline.close();
