@@ -55,6 +55,13 @@ PoseGraph::Pose movedBy(const PoseGraph::Pose& move, const Value& value) {
 
 }  // namespace
 
+IncrementalSolver::Params PoseGraphFeed::solverParams() {
+  IncrementalSolver::Params params;
+  params.spread_every_updates = 4;
+  params.kept_eliminations = 200;  // by which most cliques near the root are eliminated anew anyway
+  return params;
+}
+
 PoseGraphFeed::PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Params& params, Pace pace)
     : graph_(graph),
       index_(graph),
@@ -69,6 +76,7 @@ PoseGraphFeed::Update PoseGraphFeed::next() {
   const double start_ms = threadCpu_ms();
   Update update;
   for (const std::size_t end = update_ends_[updates_done_++]; fed_ < end; ++fed_) feedPose(fed_, update);
+  if (atEnd()) solver_.spreadAllNext();
   const auto& report = solver_.update();
   update.cpu_ms = threadCpu_ms() - start_ms;
   update.report = report;

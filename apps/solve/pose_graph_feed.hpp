@@ -34,6 +34,9 @@ class PoseGraphFeed {
     std::vector<std::int64_t> waited;
   };
 
+  /// The solver's parameters for pose graphs.
+  static IncrementalSolver::Params solverParams();
+
   /// Keeps a reference to the graph.
   PoseGraphFeed(const PoseGraph& graph, const IncrementalSolver::Params& params, Pace pace = Pace::kByPose);
 

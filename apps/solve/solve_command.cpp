@@ -18,7 +18,7 @@ namespace motorcade {
 namespace {
 
 IncrementalSolver::Params solverParams(const SolveOptions& options) {
-  IncrementalSolver::Params params;
+  IncrementalSolver::Params params = PoseGraphFeed::solverParams();
   params.policy = options.policy == "every" ? IncrementalSolver::Policy::kEveryN : IncrementalSolver::Policy::kFluid;
   if (options.batch_every_updates > 0) {
     if (options.policy != "every") throw UsageError("--every goes with --policy every");

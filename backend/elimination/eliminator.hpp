@@ -59,6 +59,7 @@ class Eliminator {
   double weakestPivot() const { return weakest_pivot_; }
   void resetWeakestPivot() { weakest_pivot_ = 1; }
   std::int64_t eliminatedScalars() const { return eliminated_scalars_; }  // ever
+  std::size_t factorBytes() const { return pool_.usedBytes(); }           // of R and what it leaves over
   std::size_t heldBytes() const { return pool_.heldBytes() + update_matrices_.heldBytes(); }
 
  private:

@@ -7,27 +7,33 @@
 #include "backend/elimination/dense_substitution.hpp"
 
 namespace motorcade {
+namespace {
 
-BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, std::int64_t most_scalars) {
+constexpr double kFar = 4;  // thresholds beyond which a variable has moved far
+
+}  // namespace
+
+BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, std::int64_t most_scalars,
+                                                      Spread spread) {
   result_ = {};
   moved_.clear();
   solved_.clear();
+  hurrying_.clear();
   first_of_call_ = newest_ + 1;
   waiting_since_.resize(graph_.slots(), 0);
   solved_by_.resize(graph_.slots(), 0);
   moved_by_.resize(graph_.slots(), 0);
+  moved_far_by_.resize(graph_.slots(), 0);
   solveWork(threshold_sigmas);
   const std::int64_t with_work = result_.scalars;
   const auto mayGoOn = [&] {
     const std::int64_t done = result_.scalars - with_work;
     return done < most_scalars && (done < EliminationBudget::kLeast || !budget_.timeIsOver());
   };
-  while (first_waiting_ < waiting_.size() && mayGoOn()) {
-    const VariableId v = waiting_[first_waiting_++];
-    const Solution since = std::exchange(waiting_since_[v.value], 0);
-    if (since == 0 || tree_.cliqueOf(v) < 0) continue;  // it was solved since, or left the tree
-    solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
-  }
+  if (spread == Spread::kAll)
+    while (first_waiting_ < waiting_.size() && mayGoOn()) solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
+  else
+    for (std::size_t i = 0; i < hurrying_.size() && mayGoOn(); ++i) solveWaiting(hurrying_[i], threshold_sigmas);
   if (2 * first_waiting_ >= waiting_.size()) {  // a deque would take memory and give it back
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(first_waiting_));
     first_waiting_ = 0;
@@ -35,6 +41,12 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   result_.moved = moved_;
   result_.solved = solved_;
   return result_;
+}
+
+void BackSubstitution::solveWaiting(VariableId v, double threshold_sigmas) {
+  const Solution since = std::exchange(waiting_since_[v.value], 0);
+  if (since == 0 || tree_.cliqueOf(v) < 0) return;  // it was solved since, or left the tree
+  solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
 }
 
 /// Solves the cliques with work, which hang together from the roots downwards.
@@ -67,9 +79,11 @@ void BackSubstitution::solve(const Clique& clique, Solution since, double thresh
   result_.scalars += clique.frontal_size;
   moveVariables(clique, threshold_sigmas);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
-    const bool moved =
-        std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return moved_by_[v.value] >= since; });
-    if (moved) putOff(tree_[child], since);
+    const auto anyIn = [&](const std::vector<Solution>& by) {
+      return std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return by[v.value] >= since; });
+    };
+    if (anyIn(moved_by_)) putOff(tree_[child], since);
+    if (anyIn(moved_far_by_)) hurrying_.push_back(tree_[child].variables.front());
     if (work_.has(child)) open_.push_back(child);
   }
 }
@@ -114,6 +128,7 @@ void BackSubstitution::moveVariables(const Clique& clique, double threshold_sigm
     if (sigmas_squared <= threshold_sigmas * threshold_sigmas) continue;
     variable.x_spread = variable.x;
     moved_by_[v.value] = newest_;
+    if (sigmas_squared > kFar * kFar * threshold_sigmas * threshold_sigmas) moved_far_by_[v.value] = newest_;
     moved_.push_back(v);
   }
 }

@@ -25,10 +25,12 @@ class BackSubstitution {
   BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, const EliminationBudget& budget)
       : graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
+  /// Steps below which cliques are solved: all, or far ones alone, and the rest waits for a call that spreads all.
+  enum class Spread : char { kAll, kFar };
   /// Solves all cliques with work, and up to about `most_scalars` below them, as long as there is time. A variable has
-  /// moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional standard deviations.
-  /// Smaller steps do not spread.
-  Result operator()(double threshold_sigmas, std::int64_t most_scalars);
+  /// moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional standard deviations,
+  /// and far beyond four times that. Smaller steps do not spread.
+  Result operator()(double threshold_sigmas, std::int64_t most_scalars, Spread spread = Spread::kAll);
   /// True when all variables of the factor have followed the steps of those above them. Otherwise some of them are
   /// where they were some updates ago.
   bool hasFollowed(FactorId factor) const;
@@ -43,6 +45,8 @@ class BackSubstitution {
   void solve(const Clique& clique, Solution since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);
   void putOff(const Clique& clique, Solution since);
+  /// Solves the clique of a variable that waits, if it still does.
+  void solveWaiting(VariableId v, double threshold_sigmas);
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
@@ -55,9 +59,11 @@ class BackSubstitution {
   std::vector<int> open_;  // cliques with work to solve
   /// Frontal variables of waiting cliques, those that wait longest first; their cliques may be gone by the time.
   std::vector<VariableId> waiting_;
-  std::size_t first_waiting_ = 0;  // those before it are done
-  /// Solutions per variable: its last, the last that moved it, and the one since which it waits; 0: none.
-  std::vector<Solution> solved_by_, moved_by_, waiting_since_;
+  std::size_t first_waiting_ = 0;     // those before it are done
+  std::vector<VariableId> hurrying_;  // in the call at hand: of cliques below a variable that moved far
+  /// Solutions per variable: its last, those that moved it last, at all and far, and the one since which it waits; 0:
+  /// none.
+  std::vector<Solution> solved_by_, moved_by_, moved_far_by_, waiting_since_;
   std::vector<double> x_separator_, x_frontal_;
 };
 

@@ -113,6 +113,8 @@ void IncrementalSolver::endReport() {
 const IncrementalSolver::Report& IncrementalSolver::update(Correction correction) {
   beginReport();
   ++counters_.updates;
+  spread_ = spreadOfUpdate();
+  spread_all_next_ = false;
   const bool fluid = params_.policy == Policy::kFluid;
   const bool batch_due =
       counters_.updates % params_.batch_every_updates == 0 || changes_.variables.size() > kMostAppended;
@@ -128,6 +130,13 @@ const IncrementalSolver::Report& IncrementalSolver::update(Correction correction
   return report_;
 }
 
+/// All steps spread in every few updates, in those without changes, and always while R is small.
+BackSubstitution::Spread IncrementalSolver::spreadOfUpdate() const {
+  const bool all = spread_all_next_ || changes_.empty() || counters_.updates % params_.spread_every_updates == 0 ||
+                   eliminator_.factorBytes() <= params_.cached_bytes;
+  return all ? BackSubstitution::Spread::kAll : BackSubstitution::Spread::kFar;
+}
+
 IncrementalSolver::Step IncrementalSolver::step(const Changes& changes, Correction correction) {
   Step step;
   work_.begin();
@@ -140,7 +149,7 @@ IncrementalSolver::Step IncrementalSolver::step(const Changes& changes, Correcti
     rebuildTop(changes);
   });
   step.spread_sigmas = params_.substitution_tolerance * graph_.models().rmsResidual();
-  step.solved = substitute(step.spread_sigmas, params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit);
+  step.solved = substitute(step.spread_sigmas, params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit, spread_);
   return step;
 }
 
@@ -160,8 +169,9 @@ void IncrementalSolver::rebuildTop(const Changes& changes) {
 }
 
 /// Solves for x where anything changed, and finds the models that are off there.
-BackSubstitution::Result IncrementalSolver::substitute(double spread_sigmas, std::int64_t most_scalars) {
-  const auto solved = substitution_(spread_sigmas, std::min(most_scalars, budget_.substitutionsLeft()));
+BackSubstitution::Result IncrementalSolver::substitute(double spread_sigmas, std::int64_t most_scalars,
+                                                       BackSubstitution::Spread spread) {
+  const auto solved = substitution_(spread_sigmas, std::min(most_scalars, budget_.substitutionsLeft()), spread);
   budget_.spendSubstitutions(solved.scalars);
   if (params_.policy == Policy::kFluid) relinearization_.compareModels(solved);
   return solved;

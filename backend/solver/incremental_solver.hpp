@@ -39,6 +39,11 @@ class IncrementalSolver {
     FluidRelinearization::Params relinearization;  // of kFluid
     /// Steps below this, in conditional standard deviations over the root mean square of the residuals, do not spread.
     double substitution_tolerance = 0.05;
+    /// Updates between those that let all steps spread. In the others, steps of up to four times the tolerance wait. 1:
+    /// none waits.
+    int spread_every_updates = 1;
+    /// Bytes of R up to which all steps spread in each update: beyond what caches hold, substitution waits for memory.
+    std::size_t cached_bytes = std::size_t{8} << 20;
     /// Scalars substituted in a step beyond those of the cliques that it eliminates or corrects. Cliques below wait for
     /// the next steps, with estimates that are a little older. 0: no limit.
     std::int64_t spread_scalars = 0;
@@ -74,6 +79,8 @@ class IncrementalSolver {
   /// Time at which models found to be off are corrected: in this update, or in the next one. Where factors are about to
   /// be replaced, their correction now would be lost.
   enum class Correction { kNow, kLater };
+  /// Lets no step wait in the next update, the last of a drive.
+  void spreadAllNext() { spread_all_next_ = true; }
   /// Updates the solution. The report lasts until the next change of the solver.
   const Report& update(Correction correction = Correction::kNow);
 
@@ -127,7 +134,9 @@ class IncrementalSolver {
   /// Relinearizes and reorders everything.
   Step batchStep(std::span<const VariableId> touched);
   void rebuildTop(const Changes& changes);
-  BackSubstitution::Result substitute(double spread_sigmas, std::int64_t most_scalars);
+  BackSubstitution::Spread spreadOfUpdate() const;
+  BackSubstitution::Result substitute(double spread_sigmas, std::int64_t most_scalars,
+                                      BackSubstitution::Spread spread = BackSubstitution::Spread::kAll);
 
   Params params_;
   FactorGraph graph_;
@@ -143,8 +152,10 @@ class IncrementalSolver {
   ProblemReporter problems_;
   Report report_;
   SolverCounters counters_;
-  double spread_sigmas_ = 0;  // of the newest step
-  Changes changes_;           // since the last update, as well as the factors that were left out
+  double spread_sigmas_ = 0;                                          // of the newest step
+  BackSubstitution::Spread spread_ = BackSubstitution::Spread::kAll;  // of the update at hand
+  bool spread_all_next_ = false;
+  Changes changes_;  // since the last update, as well as the factors that were left out
   std::vector<SolverProblem> refused_;
   std::vector<VariableId> near_root_;  // scratch: variables that an order puts there
 };

@@ -35,7 +35,7 @@ struct Options {
   std::vector<int> objects{0, 5, 20}, grid_poses{10'000, 20'000};
   MultibodyOptions drive;
   bool check = false;
-  IncrementalSolver::Params solver;
+  IncrementalSolver::Params solver = PoseGraphFeed::solverParams();
 };
 
 void addOptions(CLI::App& app, Options& options) {

@@ -30,6 +30,8 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--leisurely", params.relinearization.leisurely_rad,
       "Turn of a variable from which on it is relinearized at leisure [rad]");
   add("--substitution-tolerance", params.substitution_tolerance, "Steps below that do not spread");
+  add("--spread-every", params.spread_every_updates,
+      "Updates between those that let all steps spread, while R is larger than caches");
   add("--urgent-flops", params.relinearization.urgent_flops,
       "Work per update that goes into relinearization as soon as possible");
   add("--polish-flops", params.relinearization.polish_flops,
@@ -49,6 +51,7 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"relinearize_rad", params.relinearization.relinearize_rad},
           {"leisurely_rad", params.relinearization.leisurely_rad},
           {"substitution_tolerance", params.substitution_tolerance},
+          {"spread_every_updates", params.spread_every_updates},
           {"urgent_flops", params.relinearization.urgent_flops},
           {"polish_flops", params.relinearization.polish_flops},
           {"iterations_per_update", params.iterations_per_update},

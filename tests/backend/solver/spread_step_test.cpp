@@ -67,5 +67,81 @@ TEST(SpreadStep, ModelsAreComparedWhenAllTheirVariablesHaveFollowedAStep) {
   EXPECT_EQ(path.solver.graph().models().drift(half_followed[0]), 0) << "corrected where the estimate was bent";
 }
 
+SE3 along(const Eigen::Vector3d& translation_m) { return {Eigen::Matrix3d::Identity(), translation_m}; }
+
+/// A path with measurements between every two and three successive poses, which contradict each other.
+struct ContradictedPath {
+  static constexpr int kPoses = 100;
+
+  explicit ContradictedPath(const IncrementalSolver::Params& params) : solver(params) {
+    test::RandomPoses random(1);
+    for (int k = 0; k < kPoses; ++k) {
+      x.push_back(solver.addVariable(along({1.0 * k, 0, 0})));
+      if (k == 0) measure(0);
+      for (const int before : {1, 2})
+        if (k >= before)
+          solver.addFactor(std::make_unique<MotionFactor>(
+              std::array{x[k - before], x[k]}, MotionModel{along({1.0 * before, 0, 0}) * random.pose(0.05, 0.01)},
+              test::isotropicNoise(0.05, 0.01)));
+      solver.update();
+    }
+    solver.update();
+  }
+  /// Measures a pose a little beside where it is. Most poses before it then make small steps.
+  void measureBeside(int k, double error_m) {
+    const SE3 pose = solver.pose(x[k]) * along({0, error_m, 0});
+    solver.addFactor(std::make_unique<PriorFactor>(std::array{x[k]}, PriorModel{pose}, test::isotropicNoise(0.01, 1)));
+  }
+  void measure(int k) { measureBeside(k, 0); }
+
+  IncrementalSolver solver;
+  std::vector<VariableId> x;
+};
+
+IncrementalSolver::Params spreadingEvery(int updates) {
+  IncrementalSolver::Params params;
+  params.spread_every_updates = updates;
+  params.cached_bytes = 0;
+  return params;
+}
+
+constexpr int kLastPose = ContradictedPath::kPoses - 1;
+constexpr double kSmallStep_m = 0.005;  // a fifth of the conditional standard deviation of a pose with four motions
+
+TEST(SpreadStep, SmallStepsSpreadInEveryFewUpdates) {
+  ContradictedPath path(spreadingEvery(4)), at_once(spreadingEvery(1));
+  int waited = 0;
+  for (int i = 0; i < 12; ++i) {
+    for (ContradictedPath* p : {&path, &at_once}) p->measureBeside(kLastPose, kSmallStep_m);
+    EXPECT_EQ(at_once.solver.update().waiting_scalars, 0);
+    const auto waiting = path.solver.update().waiting_scalars;
+    EXPECT_TRUE(waiting == 0 || path.solver.counters().updates % 4 != 0);
+    if (waiting > 0) ++waited;
+  }
+  EXPECT_GE(waited, 6);
+  for (const VariableId v : path.x)
+    EXPECT_LT((path.solver.pose(v).translation() - at_once.solver.pose(v).translation()).norm(), kSmallStep_m);
+}
+
+TEST(SpreadStep, FarStepsSmallSystemsQuietUpdatesAndTheLastOneLetNothingWait) {
+  ContradictedPath path(spreadingEvery(1000));
+  path.measureBeside(kLastPose, kSmallStep_m);
+  EXPECT_GT(path.solver.update().waiting_scalars, 0);
+  EXPECT_EQ(path.solver.update().waiting_scalars, 0) << "a quiet update";
+  path.measureBeside(kLastPose, kSmallStep_m);
+  path.solver.spreadAllNext();
+  EXPECT_EQ(path.solver.update().waiting_scalars, 0) << "the last update";
+  const SE3 before = path.solver.pose(path.x[kLastPose / 2]);
+  path.measureBeside(kLastPose, 100 * kSmallStep_m);
+  path.solver.update();
+  EXPECT_GT((path.solver.pose(path.x[kLastPose / 2]).translation() - before.translation()).norm(), kSmallStep_m)
+      << "a far step";
+  IncrementalSolver::Params params = spreadingEvery(1000);
+  params.cached_bytes = 1 << 30;
+  ContradictedPath small(params);
+  small.measureBeside(kLastPose, kSmallStep_m);
+  EXPECT_EQ(small.solver.update().waiting_scalars, 0) << "a small system";
+}
+
 }  // namespace
 }  // namespace motorcade
