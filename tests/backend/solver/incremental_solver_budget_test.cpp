@@ -233,7 +233,8 @@ struct MeasuredPath {
     const PoseNoise noise{.sqrt_information = 10 * Matrix6d::Identity()};
     std::vector<VariableId> x;
     for (int k = 0; k < 60; ++k) {
-      const SE3 step = SE3({}, {1, 0, 0}) * random.pose(0.1, 0.01), at({}, {1.0 * k, 0, 0});
+      const Eigen::Matrix3d ahead = Eigen::Matrix3d::Identity();
+      const SE3 step = SE3(ahead, {1, 0, 0}) * random.pose(0.1, 0.01), at(ahead, {1.0 * k, 0, 0});
       x.push_back(solver.addVariable(at));
       if (k > 0) solver.addFactor(std::make_unique<MotionFactor>(std::array{x[k - 1], x[k]}, MotionModel{step}, noise));
       const SE3 seen = at * random.pose(0.3, 0.02);
