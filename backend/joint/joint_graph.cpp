@@ -84,7 +84,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   dropTroubled(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
   if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
-  calibrate(measurements.head.frame);
+  if (showsPoints(measurements)) calibrate(measurements.head.frame);
   if (considers_calibration_) consider(measurements);
   ++frame_count_;
 }

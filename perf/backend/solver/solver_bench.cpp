@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -132,20 +133,28 @@ int measureAll(const Options& options) {
   return kExitCheckFailed;
 }
 
+int measure(int argc, char** argv) {
+  CLI::App app("Measures the incremental solver on public pose graphs and on simulated drives.", "solver_bench");
+  Options options;
+  addOptions(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  return measureAll(options);
+}
+
 }  // namespace
 }  // namespace motorcade::perf
 
-int main(int argc, char** argv) {
-  CLI::App app("Measures the incremental solver on public pose graphs and on simulated drives.", "solver_bench");
-  motorcade::perf::Options options;
-  motorcade::perf::addOptions(app, options);
-  try {
-    app.parse(argc, argv);
-    return motorcade::perf::measureAll(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : motorcade::perf::kExitUsage;
-  } catch (const motorcade::UserError& error) {
-    std::fprintf(stderr, "solver_bench: %s\n", error.what());
-    return error.exitCode();
-  }
+int main(int argc, char** argv) try {
+  return motorcade::perf::measure(argc, argv);
+} catch (const motorcade::UserError& error) {
+  std::fprintf(stderr, "solver_bench: %s\n", error.what());
+  return error.exitCode();
+} catch (const std::exception& error) {
+  constexpr int kExitInternal = 70;
+  std::fprintf(stderr, "solver_bench: %s\n", error.what());
+  return kExitInternal;
 }

@@ -224,6 +224,20 @@ TEST_F(RealRun, FollowsTheCameraAndTheTwoLeadCars) {
   EXPECT_LE(measured["detection"]["false_rows"], 3);  // most where a label jumps by 1.5 m, in frame 61
 }
 
+TEST_F(RealRun, AStartInTheDarkIsNoFaultOfTheRig) {
+  ASSERT_EQ(run("out", "--frames 0:40 --inject black@0:5", drive_), 0) << contentOf(errors());
+  EXPECT_NEAR(summary("out")["solver"]["disparity_offset_px"].get<double>(), 0, 0.01) << "as without dark frames";
+}
+
+TEST_F(RealRun, TwoSecondsInTheDarkLeaveTheFinalPathAsExactAsItWas) {
+  ASSERT_EQ(run("seen", "", drive_), 0) << contentOf(errors());
+  ASSERT_EQ(run("dark", "--inject black@40:60", drive_), 0) << contentOf(errors());
+  const auto ate_m = [&](const std::string& name) {
+    return evaluate(name, drive_)["final"]["camera"]["ate_m"]["rmse"].get<double>();
+  };
+  EXPECT_LT(ate_m("dark"), 1.1 * ate_m("seen"));
+}
+
 TEST_F(RealRun, WritesTheSameBytesForEveryNumberOfThreads) {
   ASSERT_EQ(run("two", "--frames 0:40 --threads 2 --require tracked=1", drive_), 0) << contentOf(errors());
   ASSERT_EQ(run("one", "--frames 0:40 --threads 1", drive_), 0);
