@@ -50,8 +50,6 @@ struct PipelineConfig {
   BackendParams backend;
 };
 
-struct PipelineConfig;
-
 /// One key of the configuration file: `key()` is `frontend.optical_flow.max_tracks`.
 struct ConfigurationKey {
   std::string section;

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/inputs/vehicle_motion_file.hpp"
+#include "io/inputs/vehicle_motion.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 using namespace motorcade;
