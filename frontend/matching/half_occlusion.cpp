@@ -32,8 +32,9 @@ bool isHalfOccluded(const MatchedCorner& here, std::span<const MatchedCorner> ma
   std::array<Neighbor, 3> nearest;
   for (const MatchedCorner& other : matched) {
     const float du = other.u_px - here.u_px, dv = other.v_px - here.v_px, distance_px2 = du * du + dv * dv;
+    const float aside_px = std::abs(dv);
     // One branch, hardly ever taken: which corners are near is unforeseeable.
-    const bool near = (du >= 0) & (du <= kReachAcross_px) & (std::abs(dv) <= kReachDown_px) &
+    const bool near = (du >= 0) & (du <= kReachAcross_px) & (aside_px <= kReachDown_px) &
                       (distance_px2 < nearest.back().distance_px2);
     if (!near || &other == &here) continue;
     const bool is_nearer = other.disparity_px > kNearer * here.disparity_px;
