@@ -14,8 +14,6 @@
 namespace motorcade {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kTenths = std::tuple_size_v<decltype(Reliability::tenths)>;
 using Estimates = std::array<std::pair<const char*, const Reliability*>, 2>;
 
@@ -114,8 +112,8 @@ ResultTable reliabilityTable(const Claim& claim, const ReliabilityBySet& sets) {
   return table;
 }
 
-Json reliabilityJson(const Claim& claim, const ReliabilityBySet& sets) {
-  Json json = Json::object();
+nlohmann::ordered_json reliabilityJson(const Claim& claim, const ReliabilityBySet& sets) {
+  auto json = nlohmann::ordered_json::object();
   for (const auto& [set, of_set] : sets)
     json[set] = {{"final", jsonOf(of_set.final, claim.hits)}, {"online", jsonOf(of_set.online, claim.hits)}};
   return json;

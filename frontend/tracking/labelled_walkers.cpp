@@ -106,9 +106,9 @@ std::optional<LabelledWalkers::Mover> LabelledWalkers::operator()(const Candidat
 
 /// True when a point is as far away as the person, and moves alike as far as is known.
 bool LabelledWalkers::mayBeOn(const SceneFlow& person, const ScenePoint& point) const {
-  constexpr double kDeep_m = 0.5, kSigmas = 2, kAlikeChi2 = 11.3;  // 3 degrees of freedom: 99 %
+  constexpr double kDeep_m = 0.5, kNoiseSigmas = 2, kAlikeChi2 = 11.3;  // 3 degrees of freedom: 99 %
   const double z_m = camera_.triangulate(point.uvd_px).z(), noise_m = z_m * point.sigma_px.z() / point.uvd_px.z();
-  if (std::abs(z_m - person.p_cam.z()) > kDeep_m + kSigmas * noise_m) return false;
+  if (std::abs(z_m - person.p_cam.z()) > kDeep_m + kNoiseSigmas * noise_m) return false;
   if (!point.flow) return true;
   const Eigen::Vector3d dv = point.flow->velocity_mps - person.velocity_mps;
   const Eigen::Matrix3d C = (point.flow->covariance + person.covariance).bottomRightCorner<3, 3>();

@@ -38,11 +38,11 @@ bool ObjectConfirmation::looksThrough(const ObjectObservation& few, const Object
 /// True for a person who surely walks. People walk at 1.5 m/s, which is only a few standard deviations, so the way they
 /// go, on the ground, must tell. Errors of matching are often high up, on facades and in trees.
 bool ObjectConfirmation::walksSurely(const TrackedObject& object, double traveled_m, const GroundPlane& ground) const {
-  constexpr double kSpeedSigmas = 3, kTravel_m = 0.5, kChest_m = 1.5;
+  constexpr double kWalkSigmas = 3, kTravel_m = 0.5, kChest_m = 1.5;
   constexpr int kObserved = 4;
   if (object.life.observations() < kObserved || traveled_m < kTravel_m) return false;
   const auto isLow = [&](const BodyPoint& p) { return ground.heightOf_m(object.T_cam_body * p.p_body) < kChest_m; };
-  return movesSurely(object.kinematics, kSpeedSigmas) && std::ranges::any_of(object.points, isLow);
+  return movesSurely(object.kinematics, kWalkSigmas) && std::ranges::any_of(object.points, isLow);
 }
 
 bool ObjectConfirmation::operator()(const TrackedObject& object, const std::vector<ObjectObservation>& reported,

@@ -119,7 +119,7 @@ void buildCorner(SceneBuilder& b) {
 
 void buildBrick(SceneBuilder& b) {
   b.scene.frames = 90;
-  constexpr double kHalf_m = 4.2, kPavement_m = 1.8;
+  constexpr double kHalf_m = 4.2, kSidewalk_m = 1.8;
   constexpr float kRow_m = 24, kDepth_m = 8;
   const auto path = straight(-kApproach_m, 260);
   b.setRoads({{path, kHalf_m, {{0, 0.12, true}}}});
@@ -133,7 +133,7 @@ void buildBrick(SceneBuilder& b) {
   for (const double side : {-1.0, 1.0}) {
     for (double along_m = 0.5 * kRow_m; along_m < kApproach_m + 260; along_m += kRow_m)
       b.place(makeTerrace(kRow_m, kDepth_m, height_m, tone), 0, along_m,
-              side * (kHalf_m + kPavement_m + 0.5 * kDepth_m), 0, 1.2);
+              side * (kHalf_m + kSidewalk_m + 0.5 * kDepth_m), 0, 1.2);
     for (double along_m = side < 0 ? 10 : 24; along_m < kApproach_m + 250; along_m += 28)
       b.place(makeLampPost(b.random.bits()), 0, along_m, side * (kHalf_m + 0.6), side < 0 ? std::numbers::pi : 0, 0.3);
   }
