@@ -30,7 +30,7 @@ linked() {  # BUILD COMPILER FOLDER_OF_LIBRARIES [OPTION...]
   for part in interface pipeline watch frontend backend io core; do
     libraries+=("$(find "$build" -name "libmotorcade_$part.a")")
   done
-  "$compiler" -std=c++20 -O2 -ffp-contract=off -no-pie tests/interface/print_results.cpp -Iinclude \
+  "$compiler" -std=c++20 -O2 -ffp-contract=off -no-pie tests/support/print_results.cpp -Iinclude \
     -Wl,--start-group "${libraries[@]}" -Wl,--end-group "$folder"/lib{tbb,png,jpeg,deflate,ccolamd}.so "$@" -o "$work/print_results"
 }
 
