@@ -25,6 +25,7 @@ step tsan tests/run.sh --tsan
 step fuzz tests/fuzz.sh "${1:-600}"
 step packages tests/packages.sh
 step arm64 tests/arm64.sh
+step "arm64 counts" perf/arm64_instructions.sh
 step systems tests/systems.sh
 step "long drive" perf/long_drive.sh 100000
 step scenes perf/scenes.sh

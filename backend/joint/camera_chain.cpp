@@ -58,13 +58,14 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
     const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry.covariance;
     if (told) return;
     const auto factor = addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
-    unseen_.push_back({factor, before.x, camera.x, before.head.stamp, m.head.stamp});
+    if (seen == frames_.end())
+      unseen_.clear();  // a motion since then will not be measured any more
+    else
+      unseen_.push_back({factor, before.x, camera.x, before.head.stamp, m.head.stamp});
     return;
   }
-  if (after_unseen && !told) {
-    unseen_.push_back({{}, before.x, camera.x, before.head.stamp, m.head.stamp});
-    moveSteadily(m.head.stamp, seen->second.head.stamp);
-  }
+  if (after_unseen && !told) unseen_.push_back({{}, before.x, camera.x, before.head.stamp, m.head.stamp});
+  moveSteadily(m.head.stamp, seen->second.head.stamp);
   if (camera.weak) addOdometry(last_seen_.T_seen_now, m.odometry.covariance, seen->second.x, camera.x);
   if (m.head.status == FrameStatus::kGood) moveStart(m.head.stamp, seen->second.head.stamp);
 }

@@ -7,7 +7,7 @@
 #include "io/images/image_file.hpp"
 #include "io/sequence/sequence.hpp"
 
-/// What the user gives of the cameras, and how their samples become gray.
+/// The cameras as the user gives them, and the conversion of their samples to gray.
 namespace motorcade {
 
 /// The same with absolute paths, so that it can be used from elsewhere.
