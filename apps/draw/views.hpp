@@ -18,7 +18,7 @@ struct DrawnImages {
 };
 
 /// Paints each object's mask, points, cuboid and tag onto a sheet that already shows the left image, pixel by pixel.
-/// Where no cuboid is known, the box is drawn. Its path of the last seconds and an arrow of one second's motion lie on
+/// The box is drawn where no cuboid is known. Its path of the last seconds and an arrow of one second's motion lie on
 /// the ground. The tag tells kind, distance and speed.
 void paintImageView(Sheet& sheet, const DrawnImages& images, const RecordedDrive& drive, std::size_t frame);
 
