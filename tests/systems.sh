@@ -8,7 +8,7 @@ systems=("$@")
 [[ ${#systems[@]} -gt 0 ]] || systems=(bookworm-gcc bookworm-clang trixie-gcc trixie-clang)
 results=(camera_online.txt camera_final.txt objects_online.csv objects_final.csv covariances.csv)
 roots=$PWD/build/systems mounted=()
-trap 'for place in "${mounted[@]}"; do umount "$place"; done' EXIT
+trap 'for place in "${mounted[@]}"; do umount --recursive --lazy "$place"; done' EXIT
 
 apps/setup.sh debootstrap
 drive=${MOTORCADE_DATA:-../shared/data}/kitti_tracking_0003

@@ -32,8 +32,12 @@ constexpr double kSlide_mps = 0.5, kSlideShare = 0.2;   // sideways and upwards;
 constexpr double kSway_radps = 0.15, kMinRadius_m = 3;  // turning where it stands, and the tightest curve
 constexpr double kYawRate_radps = 1.0;                  // of a tight curve
 constexpr double kDriving_mps = 3.0;                    // faster than what is carried or flies indoors
-constexpr double kClearScore = 0.25;   // of the worst score: three quarters agree, and more samples gain nothing ...
-constexpr int kSearchShare = 4;        // ... once a quarter of the hypotheses have been tried
+constexpr double kClearScore = 0.25;  // of the worst score: three quarters agree, and more samples gain nothing ...
+constexpr int kSearchShare = 4;       // ... once a quarter of the hypotheses have been tried
+/// Share of the points that may agree with a wrong motion. Where two vehicles fill the view, the points of each agree
+/// with it along a band of the image: a tolerance of 3 px of flows that differ by 60 px and more. A motion on which no
+/// more agree must be steadier than others, by half the acceleration.
+constexpr double kByChance = 0.1, kSteadierThan = 0.5;
 constexpr double kRefinementGate = 3;  // of the inliers' chi-square: a hypothesis of three points is not exact
 
 /// The observations that vote on hypotheses, with the weights of their votes.
@@ -224,6 +228,9 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   for (const double chi2 : poseChi2(camera_, all, fit->T_cam_ref)) ego.inliers.push_back(chi2 < params_.inlier_chi2);
   ego.inlier_count = static_cast<int>(std::count(ego.inliers.begin(), ego.inliers.end(), true));
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
+  const bool by_chance = ego.inlier_count < kByChance * static_cast<double>(observations.size());
+  const bool is_steady = surprise(fit->T_cam_ref, predicted) < kSteadierThan;
+  if (by_chance && !is_steady && predicted.steady_frames >= kTrustedSteadyFrames) return std::nullopt;
   return ego;
 }
 

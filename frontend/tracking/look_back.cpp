@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "core/decompositions.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/small_body.hpp"
@@ -17,6 +19,14 @@ void dropNew(TrackedObject& object) {
       return std::ranges::find(o.measured, point.point, &PointMeasurement::point) != o.measured.end();
     });
   });
+}
+
+/// True when a body that was predicted with the `prior` may have been there.
+bool mayBe(const SE3& T_cam_body, const PosePrior& prior) {
+  constexpr double kChi2 = 11.3;  // 99 % of 3 degrees of freedom
+  const Eigen::Vector3d off_m = (prior.mean.inverse() * T_cam_body).translation();
+  const Eigen::Matrix3d covariance = inverse(prior.information).topLeftCorner<3, 3>();
+  return off_m.dot(covariance.inverse() * off_m) < kChi2;
 }
 
 }  // namespace
@@ -40,7 +50,7 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
   for (int k = 0; k < frames_ && earlier != past_.rend(); ++k, ++earlier) {
     then.predict(secondsBetween(now, earlier->scene->head.stamp), kinematics);
     now = earlier->scene->head.stamp;
-    auto observation = observe(*earlier, body, then, later);
+    auto observation = observe(*earlier, followed, body, then, later);
     if (!observation || isTaken(*earlier, observation->T_cam_body, object.born_slow)) return;
     // A point only near the object then is evidence of it, but surely a point of it only if it was followed later.
     std::erase_if(observation->measured, [&](const PointMeasurement& p) { return !followed.find(p.point); });
@@ -50,12 +60,21 @@ void LookBack::operator()(TrackedObject& object, Timestamp now, const ObjectKine
   }
 }
 
-/// Looks for the object in an earlier frame; `then` and `later` become what is known of it there.
-std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, TrackedObject& object,
-                                                   ObjectKinematics& then, MeasuredPoints& later) const {
+/// Looks for the object in an earlier frame; `then` and `later` become what is known of it there. Points near it may
+/// rest. Without any that are surely its own, they tell nothing of a person, who stands before them, and of a vehicle
+/// only what was to be expected.
+std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, const TrackedObject& followed,
+                                                   TrackedObject& object, ObjectKinematics& then,
+                                                   MeasuredPoints& later) const {
   const PosePrior prior{earlier.T_world_cam.inverse() * then.pose(), inverse(then.poseCovariance())};
+  const auto is_own = [&](const PointMeasurement& p) { return followed.find(p.point) != nullptr; };
+  const auto believed = [&](const ObjectMotionEstimator::Found& found) {
+    return std::ranges::any_of(found.observation.measured, is_own) ||
+           (!object.born_slow && mayBe(found.fit.T_cam_ref, prior));
+  };
   std::optional<ObjectObservation> observation;
-  if (auto found = motion_.lookBack(object, *earlier.scene, later, prior)) {
+  auto found = motion_.lookBack(object, *earlier.scene, later, prior);
+  if (found && believed(*found)) {
     then.acceptPose((earlier.T_world_cam * found->fit.T_cam_ref).normalized(), found->fit.covariance);
     later = std::move(found->points);
     motion_.addNearby(*earlier.scene, found->fit.T_cam_ref, object, later);

@@ -42,8 +42,8 @@ class LookBack {
   const std::deque<PastScene>& past() const { return past_; }
 
  private:
-  std::optional<ObjectObservation> observe(const PastScene& earlier, TrackedObject& object, ObjectKinematics& then,
-                                           MeasuredPoints& later) const;
+  std::optional<ObjectObservation> observe(const PastScene& earlier, const TrackedObject& followed,
+                                           TrackedObject& object, ObjectKinematics& then, MeasuredPoints& later) const;
 
   static bool isTaken(const PastScene& scene, const SE3& T_cam_body, bool small);
 

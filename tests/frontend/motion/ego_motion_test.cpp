@@ -160,6 +160,28 @@ TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
   EXPECT_LT((of_any->T_seen_now.translation() - sliding.translation()).norm(), 0.05);
 }
 
+/// Where vehicles fill the view, some of their points agree with a motion that is none.
+TEST(EgoMotion, AMotionOnWhichFewAgreeMustBeSteady) {
+  const EgoMotionEstimator estimate({}, kRig);
+  const auto believed = [&](int agreeing, double change_m) {
+    Street s = street(agreeing, 0, 1);
+    Noise noise(2);
+    while (s.observations.size() < 400) {  // each with a motion of its own
+      const Eigen::Vector3d before = test::streetPoint(noise, 6, 35);
+      const auto o = test::lookTwice(before, before + noise.inBox({-2, -1, -2}, {2, 1, 2}), noise);
+      if (!o) continue;
+      s.observations.push_back(*o);
+      s.moves.push_back(true);
+    }
+    const SE3 before = trueMotion() * SE3(Eigen::Matrix3d::Identity(), {0, 0, change_m});
+    return estimate(s.observations, s.labels(), {before, 0.1, 10}, 1).has_value();
+  };
+  constexpr double kSudden_m = 0.15, kSteady_m = 0.05;  // 15 and 5 m/s^2
+  EXPECT_FALSE(believed(20, kSudden_m));
+  EXPECT_TRUE(believed(20, kSteady_m));
+  EXPECT_TRUE(believed(80, kSudden_m));
+}
+
 TEST(EgoMotion, ASteadyMotionDoesNotBreakOff) {
   const EgoMotionEstimator estimate({}, kRig);
   const SE3 ahead(Eigen::Matrix3d::Identity(), {0, 0, 1}), braked(Eigen::Matrix3d::Identity(), {0, 0, 0.9});

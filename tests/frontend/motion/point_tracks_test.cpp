@@ -158,8 +158,8 @@ TEST(PointTracks, AllDisparitiesFollowTheOffset) {
   const double before_px = drive.known(kA)->disparity_px;
   drive.tracks.shiftDisparities(0.5F);
   EXPECT_NEAR(drive.known(kA)->disparity_px, before_px + 0.5, 1e-5);
-  const PointTrack& track = drive.tracks.observedNow().front();
-  EXPECT_NEAR(track.oldest().uvd_px.z(), kRig.project(kPoint)->z() + 0.5, 1e-4);
+  const auto observed = drive.tracks.observedNow();
+  EXPECT_NEAR(observed.front().get().oldest().uvd_px.z(), kRig.project(kPoint)->z() + 0.5, 1e-4);
 }
 
 TEST(PointTracks, TrustedPointsAreCheckedForAmbiguousTextureInTurn) {

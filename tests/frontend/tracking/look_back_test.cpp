@@ -1,5 +1,7 @@
 #include "frontend/tracking/look_back.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -17,7 +19,9 @@ using test::TexturedBoard;
 constexpr double kSpeed_mps = 8, kFrame_s = 0.1;
 constexpr int kFrames = 7, kConfirmed = 6, kSpawned = 4;
 
-SE3 boardIn(int frame) { return TexturedBoard::standingAt(-1, 14 + kSpeed_mps * kFrame_s * frame); }
+SE3 boardIn(int frame, double speed_mps = kSpeed_mps) {
+  return TexturedBoard::standingAt(-1, 14 + speed_mps * kFrame_s * frame);
+}
 Timestamp stampOf(int frame) { return Timestamp{static_cast<std::int64_t>(1e9 * kFrame_s) * frame}; }
 
 /// A board that drives ahead of a standing camera. Corners on it are followed from the frame in which it was spawned
@@ -96,6 +100,49 @@ TEST(LookBack, EndsWhereAnotherObjectWasReportedInItsPlace) {
   EXPECT_EQ(taken.object.backlog.front().frame.value, 2);
   behind_another.lookBack();
   EXPECT_EQ(behind_another.object.backlog.front().frame.value, 0);
+}
+
+/// An object that nothing shows before it was spawned, and what rests where it was then.
+TrackedObject beforeRestingPoints(double speed_mps, bool born_slow) {
+  LookBack look_back{12, 3, {}, kRig};
+  for (int frame = 0; frame < kFrames; ++frame) {
+    auto scene = std::make_shared<SceneMotion>();
+    scene->head.frame = {frame};
+    scene->head.stamp = stampOf(frame);
+    scene->features = TexturedBoard::seenAt(boardIn(frame, speed_mps), frame >= kSpawned);
+    if (frame >= kSpawned) scene->points = TexturedBoard::points(boardIn(frame, speed_mps), 6, 100);
+    std::ranges::move(TexturedBoard::points(boardIn(kSpawned, speed_mps), 20, 500), std::back_inserter(scene->points));
+    look_back.remember(scene, SE3{}, {}, {});
+  }
+  TrackedObject object = BoardDrive(kSpawned).object;
+  object.born_slow = born_slow;
+  const SE3 T_cam_body = boardIn(kConfirmed, speed_mps);
+  Vector6d twist = Vector6d::Zero();
+  twist[0] = speed_mps;
+  Matrix12d covariance = 1e-4 * Matrix12d::Identity();
+  covariance.bottomRightCorner<6, 6>() *= 400;
+  object.kinematics = ObjectKinematics(T_cam_body, twist, covariance);
+  object.points.clear();
+  for (const ScenePoint& p : TexturedBoard::points(T_cam_body, 6, 100))
+    object.points.push_back(toBody(p, T_cam_body, kRig));
+  for (ObjectObservation& seen : object.backlog) {
+    seen.T_cam_body = boardIn(static_cast<int>(seen.frame.value), speed_mps);
+    seen.measured.clear();
+    for (const ScenePoint& p : TexturedBoard::points(seen.T_cam_body, 6, 100))
+      seen.measured.push_back(measurementOf(p, 0));
+  }
+  look_back(object, stampOf(kConfirmed), {});
+  return object;
+}
+
+TEST(LookBack, IsNotHeldByPointsThatRestWhereTheObjectWas) {
+  for (const auto& [speed_mps, born_slow] : {std::pair(kSpeed_mps, false), std::pair(1.4, true)}) {
+    const TrackedObject object = beforeRestingPoints(speed_mps, born_slow);
+    for (const ObjectObservation& seen : object.backlog) {
+      const int frame = static_cast<int>(seen.frame.value);
+      EXPECT_THAT(seen.T_cam_body, IsNearPose(boardIn(frame, speed_mps), 0.1)) << speed_mps << " m/s, frame " << frame;
+    }
+  }
 }
 
 TEST(LookBack, EndsOnTheFlankOfATallVehicleThatWasReported) {
