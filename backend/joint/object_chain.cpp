@@ -18,9 +18,7 @@ void ObjectChain::begin(ObjectTrack& track, ObjectRecord& record) {
   Vector6d twist = Vector6d::Zero();
   twist.head<3>() = T_cam_body.rotation().transpose() * record.seen.velocity_cam_mps;
   record.twist = solver_.addVariable(SmallVector(twist));
-  solver_.addFactor(priorFactor(
-      record.pose, T_cam_body,
-      poseSigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad, params_.object_axes_sigma_rad)));
+  track.has_gauge = false;
   solver_.addFactor(std::make_unique<VectorPriorFactor>(
       record.twist, twist,
       poseSigmas(params_.twist_sigma_mps, params_.tilt_rate_sigma_radps, params_.yaw_rate_sigma_radps)));
@@ -31,12 +29,21 @@ void ObjectChain::begin(ObjectTrack& track, ObjectRecord& record) {
   addRolling(track, record);
 }
 
+void ObjectChain::holdNewest(ObjectTrack& track) {
+  const ObjectRecord& newest = track.records.rbegin()->second;
+  solver_.addFactor(priorFactor(
+      newest.pose, newest.seen.T_cam_body,
+      poseSigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad, params_.object_axes_sigma_rad)));
+  track.has_gauge = true;
+}
+
 void ObjectChain::extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record) {
   const double dt_s = secondsBetween(before.stamp, record.stamp);
   const SmallVector twist = std::get<SmallVector>(solver_.estimate(before.twist));
   const Vector6d step = dt_s * twist;
   const SE3 u = cameraMotion(before, record);
-  record.pose = solver_.addVariable((u.inverse() * solver_.pose(before.pose) * SE3::exp(step)).normalized());
+  const SE3 predicted = u.inverse() * solver_.pose(before.pose) * SE3::exp(step);
+  record.pose = solver_.addVariable(track.has_gauge ? predicted.normalized() : record.seen.T_cam_body);
   record.twist = solver_.addVariable(twist);
   addMotion(track, before, record);
   addRolling(track, record);

@@ -17,10 +17,13 @@ class ObjectChain {
               const std::map<FrameId, CameraRecord>& frames)
       : params_(params), use_smoothness_(use_smoothness), solver_(solver), frames_(frames) {}
 
-  /// Adds the track's first pose, which is its gauge.
+  /// Adds the track's first pose.
   void begin(ObjectTrack& track, ObjectRecord& record);
-  /// Adds a further pose, where the motion of the record before puts it.
+  /// Adds a further pose: where it was seen while the track has no gauge yet, then where the motion of the record
+  /// before puts it.
   void extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record);
+  /// Makes the newest pose the gauge of the body's frame. Those that were found by looking back from it may be far off.
+  void holdNewest(ObjectTrack& track);
   /// Renews an object's motion from the camera's, which is known better when its landmarks have ended.
   void renewMotion(ObjectTrack& track, FrameId newest);
 

@@ -42,6 +42,7 @@ struct ObjectRecord {
 struct ObjectTrack {
   VariableId shared;  // by all its poses, see the graphs; invalid before the first observation and after a drop
   std::map<FrameId, ObjectRecord> records;
+  bool has_gauge = false;  // one of its poses is known
 };
 
 struct FrameCovariances {

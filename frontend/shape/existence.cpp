@@ -14,6 +14,9 @@ constexpr double kTrafficSpeed_mps = 10;  // standard deviation, along each axis
 constexpr double kMostBySpeed = 2, kLeastBySpeed = -4;
 constexpr double kMostPerSpeed = 0.5;  // per m/s: most wrong matches seem to move slowly
 constexpr double kForgetting = 0.1;    // of the best recent speed, a frame
+/// Log odds by which the best of all settled speeds promises too much: of eight tracks that came to less than this by
+/// speed and verdicts, none was of a body.
+constexpr double kBestOfMany = 0.55;
 constexpr double kMostByVerdicts = 6;
 constexpr double kDoubt = 2.2;          // log odds against a slow birth, until the image tells more
 constexpr double kSure = 2.5;           // sum of verdicts from which on a body was surely seen: one clear verdict
@@ -97,7 +100,8 @@ double Existence::settledProbability(FrameId frame) const {
   const auto later = std::ranges::lower_bound(largest_, frame, {}, &Sum::frame);
   const bool surely_seen = later != largest_.end() && later->verdicts >= kSure;
   const double before_slip = surely_seen ? later->verdicts - kSlip : verdicts_;
-  return probabilityOf(settled_speed_ + std::max(verdicts_, before_slip) + followedEvidence());
+  const double by_speed = settled_speed_ > 0 ? settled_speed_ - kBestOfMany : settled_speed_;
+  return probabilityOf(by_speed + std::max(verdicts_, before_slip) + followedEvidence());
 }
 
 }  // namespace motorcade

@@ -27,7 +27,9 @@ class Chain {
  public:
   explicit Chain(bool use_smoothness = true) : chain_(params_, use_smoothness, solver_, frames_) {}
 
-  ObjectRecord& extend() {
+  /// Where it was `seen` counts in the first frame and before the gauge, which the first frame is unless `hold` is
+  /// false.
+  ObjectRecord& extend(const SE3& seen = firstSeen(), bool hold = true) {
     const std::int64_t frame = std::ssize(frames_);
     const SE3 T_world_cam = frame == 0 ? SE3{} : (solver_.pose(frames_.at({frame - 1}).x) * kCameraStep).normalized();
     CameraRecord& camera = frames_[{frame}];
@@ -36,13 +38,15 @@ class Chain {
     ObjectRecord& record = track_.records[{frame}];
     record.seen.frame = {frame};
     record.stamp.ns = static_cast<std::int64_t>(1e9 * kStep_s) * frame;
+    record.seen.T_cam_body = seen;
     if (frame == 0) {
-      record.seen.T_cam_body = firstSeen();
       record.seen.velocity_cam_mps = kVelocity_mps;
       chain_.begin(track_, record);
     } else {
       chain_.extend(track_, track_.records.at({frame - 1}), record);
     }
+    if (!hold) return record;
+    if (!track_.has_gauge) chain_.holdNewest(track_);
     EXPECT_TRUE(solver_.update().problems.empty()) << frame;
     return record;
   }
@@ -82,6 +86,18 @@ TEST(ObjectChain, BeginsWhereAndAsFastAsItWasSeen) {
   EXPECT_LT(chain.twistIn(0).tail<3>().norm(), 1e-3);
   ASSERT_TRUE(chain.track().shared.valid());
   EXPECT_LT((chain.chain().travelAxes(chain.track()) - Eigen::Matrix3d::Identity()).norm(), 1e-3);
+}
+
+/// What is found by looking back may be another thing. The object stays where it was when it was spawned.
+TEST(ObjectChain, StaysWhereItWasSpawnedWhateverIsFoundBefore) {
+  Chain chain;
+  const SE3 elsewhere = SE3(Eigen::Matrix3d::Identity(), {0, 0, -8}) * firstSeen();
+  const ObjectRecord& before = chain.extend(elsewhere, false);
+  const ObjectRecord& spawned = chain.extend();
+  for (int i = 0; i < 5; ++i) chain.solver().update();
+  EXPECT_THAT(chain.solver().pose(spawned.pose), test::IsNearPose(firstSeen(), 1e-3));
+  const Eigen::Vector3d was = kCameraStep * firstSeen().translation() - kStep_s * kVelocity_mps;
+  EXPECT_LT((chain.solver().pose(before.pose).translation() - was).norm(), 0.1) << "its motion leads there";
 }
 
 TEST(ObjectChain, GoesOnInTheWorldWithTheTwistOfTheFrameBefore) {
