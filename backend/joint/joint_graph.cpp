@@ -103,7 +103,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
     if (frames_.contains(seen.frame) && isFinite(seen.T_cam_body)) addObservation(seen);
   if (tracks_.empty()) return;
   for (auto& [id, track] : tracks_) {
-    if (!track.has_gauge && track.records.rbegin()->second.pose.valid()) objects_.holdNewest(track);
+    if (!track.has_gauge && track.records.rbegin()->second.pose.valid()) objects_.hold(track);
     LandmarkBundles& landmarks = landmarksOf(id);
     const bool seen_now = track.records.rbegin()->first == measurements.head.frame;
     if (!seen_now && showsPoints(measurements))

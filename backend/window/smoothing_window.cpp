@@ -36,6 +36,7 @@ std::optional<TrackId> objectOf(const std::map<TrackId, ObjectTrack>& tracks, Va
 ObjectRecord& SmoothingWindow::addRecord(ObjectTrack& track, const ObjectObservation& seen) {
   ObjectRecord& record = track.records[seen.frame];
   record.seen = seen;
+  record.measured = static_cast<int>(seen.measured.size());
   record.seen.measured = record.seen.patches = {};
   record.stamp = frames_.at(seen.frame).head.stamp;
   return record;

@@ -31,6 +31,7 @@ struct ObjectCovariances {
 /// An object in one frame of the window.
 struct ObjectRecord {
   ObjectObservation seen;  // without its points
+  int measured = 0;        // of its points
   Timestamp stamp;
   VariableId pose, twist;          // invalid when the frame's pose is not in the graph, or where there are no twists
   std::optional<FactorId> motion;  // since the record before, where it may be replaced

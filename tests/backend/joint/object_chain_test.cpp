@@ -46,7 +46,7 @@ class Chain {
       chain_.extend(track_, track_.records.at({frame - 1}), record);
     }
     if (!hold) return record;
-    if (!track_.has_gauge) chain_.holdNewest(track_);
+    if (!track_.has_gauge) chain_.hold(track_);
     EXPECT_TRUE(solver_.update().problems.empty()) << frame;
     return record;
   }
@@ -98,6 +98,16 @@ TEST(ObjectChain, StaysWhereItWasSpawnedWhateverIsFoundBefore) {
   EXPECT_THAT(chain.solver().pose(spawned.pose), test::IsNearPose(firstSeen(), 1e-3));
   const Eigen::Vector3d was = kCameraStep * firstSeen().translation() - kStep_s * kVelocity_mps;
   EXPECT_LT((chain.solver().pose(before.pose).translation() - was).norm(), 0.1) << "its motion leads there";
+}
+
+TEST(ObjectChain, StaysWhereItsOwnPointsWereFoundFirst) {
+  Chain chain;
+  const SE3 found = SE3(Eigen::Matrix3d::Identity(), {0, 0, -0.5}) * firstSeen();
+  ObjectRecord& first = chain.extend(found, false);
+  first.measured = 4;
+  chain.extend();
+  for (int i = 0; i < 5; ++i) chain.solver().update();
+  EXPECT_THAT(chain.solver().pose(first.pose), test::IsNearPose(found, 1e-3));
 }
 
 TEST(ObjectChain, GoesOnInTheWorldWithTheTwistOfTheFrameBefore) {
