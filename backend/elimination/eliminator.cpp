@@ -1,6 +1,7 @@
 #include "backend/elimination/eliminator.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "backend/elimination/dense_substitution.hpp"
 
@@ -91,18 +92,20 @@ void Eliminator::release(Clique& clique) {
 }
 
 bool Eliminator::lift(VariableId v, std::span<const int> cliques) {
-  const int top = cliques.back(), parent = tree_[top].parent;
-  if (!tree_.putBehind(v, top)) return false;
-  const auto separator = tree_[top].separator();
-  const std::vector<VariableId> boundary(separator.begin(), separator.end());
-  const auto& removed = remove(cliques);
-  eliminate({.order = removed.variables,
-             .boundary = boundary,
-             .factors = removed.factors,
-             .orphans = removed.orphans,
-             .parent = parent,
-             .renumber = false});
+  if (!std::ranges::all_of(cliques, [&](int c) { return tree_[c].singular.empty(); })) return false;
+  if (!tree_.putBehind(v, cliques.back())) return false;
+  lift_.moveToEnd(cliques.front(), v);
+  for (const int c : cliques.first(cliques.size() - 1)) {
+    lift_.moveToParent(c);
+    if (tree_[c].frontals == 0) dissolve(c);
+  }
   return true;
+}
+
+/// Removes a clique that has no frontals left, and hangs its children below its parent.
+void Eliminator::dissolve(int id) {
+  const int parent = tree_[id].parent;
+  for (const int orphan : remove(std::array{id}).orphans) attach(orphan, parent);
 }
 
 EliminationTree::Removed& Eliminator::remove(std::span<const int> cliques) {

@@ -9,6 +9,7 @@
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/elimination/front.hpp"
 #include "backend/elimination/update_matrices.hpp"
+#include "backend/elimination/variable_lift.hpp"
 #include "backend/graph/block_pool.hpp"
 #include "backend/graph/factor_graph.hpp"
 
@@ -39,7 +40,7 @@ class Eliminator {
   std::span<const int> eliminate(const Elimination& problem);
   /// Moves a variable up the tree: it becomes the last of the variables of these cliques, its own and the next ones
   /// above it. What R says stays, and nothing above the cliques changes. Returns false, and does nothing, when the
-  /// order has no room left there.
+  /// order has no room left there or a scalar has no information. See VariableLift.
   bool lift(VariableId v, std::span<const int> cliques);
   /// See EliminationTree.
   EliminationTree::Removed& remove(std::span<const int> cliques);
@@ -68,12 +69,14 @@ class Eliminator {
   void attach(int clique, int parent);
   void layOut(Clique& clique);
   void release(Clique& clique);
+  void dissolve(int clique);
 
   const FactorGraph& graph_;
   EliminationTree& tree_;
   Front front_;
   UpdateMatrices update_matrices_;
   BlockPool pool_;  // apart: panels stay for as long as their variables, most update matrices do not
+  VariableLift lift_{graph_, tree_, pool_, update_matrices_};
   EliminationPattern pattern_;
   std::int64_t eliminated_scalars_ = 0;
   double weakest_pivot_ = 1;

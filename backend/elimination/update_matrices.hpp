@@ -29,6 +29,8 @@ class UpdateMatrices {
   /// Takes memory for a clique that may have it still.
   void takeAgain(Clique& clique);
   void giveBack(Clique& clique);
+  /// Takes memory for the clique's present length, beside a matrix that it has.
+  double* takeAnother(const Clique& clique) { return memory_.take(clique.updateMatrixLength()); }
 
   /// Makes the missing matrices again that the clique's front gathers.
   void makeBelow(const Clique& clique);
