@@ -16,6 +16,7 @@ std::span<const int> Eliminator::eliminate(const Elimination& problem) {
   created_.clear();
   if (problem.order.empty()) return created_;
   update_matrices_.beginElimination();
+  flops_ += kFlopsPerOrdered * static_cast<double>(problem.order.size());
   for (const auto& group : pattern_.groups()) created_.push_back(addClique(problem, group));
   const auto cliqueOfTerm = [&](std::size_t term) { return created_[pattern_.groupOfTerm(static_cast<int>(term))]; };
   for (std::size_t f = 0; f < problem.factors.size(); ++f) tree_.addFactor(cliqueOfTerm(f), problem.factors[f]);
@@ -95,6 +96,7 @@ bool Eliminator::lift(VariableId v, std::span<const int> cliques) {
   if (!std::ranges::all_of(cliques, [&](int c) { return tree_[c].singular.empty(); })) return false;
   if (!tree_.putBehind(v, cliques.back())) return false;
   lift_.moveToEnd(cliques.front(), v);
+  for (const int c : cliques) flops_ += liftCost(tree_[c], graph_.sizeOf(v)).flops;
   for (const int c : cliques.first(cliques.size() - 1)) {
     lift_.moveToParent(c);
     if (tree_[c].frontals == 0) dissolve(c);
@@ -132,7 +134,9 @@ void Eliminator::refresh(int id) {
   update_matrices_.takeAgain(clique);
   weakest_pivot_ = std::min(weakest_pivot_, front_.eliminate(clique));
   update_matrices_.giveBackMadeAgainBelow(clique);
-  eliminated_scalars_ += clique.frontal_size;
+  const CliqueCost cost = eliminationCost(clique);
+  eliminated_scalars_ += cost.scalars;
+  flops_ += cost.flops;
 }
 
 void Eliminator::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "backend/elimination/clique_cost.hpp"
 #include "backend/elimination/elimination_pattern.hpp"
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/elimination/front.hpp"
@@ -60,6 +61,7 @@ class Eliminator {
   double weakestPivot() const { return weakest_pivot_; }
   void resetWeakestPivot() { weakest_pivot_ = 1; }
   std::int64_t eliminatedScalars() const { return eliminated_scalars_; }  // ever
+  double flops() const { return flops_; }                                 // of eliminations and lifts, ever
   std::size_t factorBytes() const { return pool_.usedBytes(); }           // of R and what it leaves over
   std::size_t heldBytes() const { return pool_.heldBytes() + update_matrices_.heldBytes(); }
 
@@ -79,6 +81,7 @@ class Eliminator {
   VariableLift lift_{graph_, tree_, pool_, update_matrices_};
   EliminationPattern pattern_;
   std::int64_t eliminated_scalars_ = 0;
+  double flops_ = 0;
   double weakest_pivot_ = 1;
   // Scratch.
   std::vector<int> position_;  // per variable: in the elimination at hand, or its first scalar in a clique

@@ -29,8 +29,10 @@ class UpdateMatrices {
   /// Takes memory for a clique that may have it still.
   void takeAgain(Clique& clique);
   void giveBack(Clique& clique);
-  /// Takes memory for the clique's present length, beside a matrix that it has.
-  double* takeAnother(const Clique& clique) { return memory_.take(clique.updateMatrixLength()); }
+  /// Takes memory for the clique's present length instead of what it has; the numbers there are lost.
+  void exchange(Clique& clique) {
+    clique.update_matrix = memory_.exchange(clique.update_matrix, clique.updateMatrixLength());
+  }
 
   /// Makes the missing matrices again that the clique's front gathers.
   void makeBelow(const Clique& clique);

@@ -1,7 +1,6 @@
 #include "backend/elimination/variable_lift.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "backend/elimination/row_update.hpp"
 
@@ -90,9 +89,10 @@ void VariableLift::takeRows(const Clique& clique, int count) {
 void VariableLift::takeIn(Clique& parent, const Clique& clique, int count) {
   const int n = parent.frontal_size, size = parent.size + count, ld = padded(size + 1);
   const int length = clique.separatorSize() + count + 1;
-  double* const panel = panels_.take(std::size_t(ld) * (n + count));
+  former_.assign(parent.panel, parent.panel + parent.panelLength());
+  double* const panel = parent.panel = panels_.exchange(parent.panel, std::size_t(ld) * (n + count));
   for (int j = 0; j < n; ++j) {
-    const double* const from = parent.panel + std::size_t(j) * parent.panelStride();
+    const double* const from = former_.data() + std::size_t(j) * parent.panelStride();
     double* const to = panel + std::size_t(j) * ld;
     std::copy(from + j, from + n, to + j);
     std::fill(to + n, to + n + count, 0.0);
@@ -116,25 +116,23 @@ void VariableLift::takeIn(Clique& parent, const Clique& clique, int count) {
     from += scalars;
   }
   add(from, size, 1);
-  panels_.give(std::exchange(parent.panel, panel));
   addRows({.data = panel, .ld = ld, .rows = size + 1, .columns = n + count}, first, added_.data(), count);
 }
 
 /// Makes the clique pass on what the rows that left it say, but for the factors that went with them.
 void VariableLift::passOn(Clique& clique, int count) {
   const int size = clique.separatorSize(), length = size + 1;
-  double* const contribution = panels_.take(size);
+  former_.assign(clique.contribution, clique.contribution + size - count);
+  clique.contribution = panels_.exchange(clique.contribution, size);
   for (int i = 0; i < size; ++i) {
-    contribution[i] = i < count ? 0 : clique.contribution[i - count];
+    clique.contribution[i] = i < count ? 0 : former_[i - count];
     for (int k = 0; k < count; ++k)
-      contribution[i] += rows_[std::size_t(k) * length + i] * rows_[std::size_t(k) * length + size];
+      clique.contribution[i] += rows_[std::size_t(k) * length + i] * rows_[std::size_t(k) * length + size];
   }
-  panels_.give(std::exchange(clique.contribution, contribution));
   if (clique.update_matrix) {
-    double* const grown = update_matrices_.takeAnother(clique);
-    growByProduct(grown, size, clique.update_matrix, rows_.data(), length, count);
-    update_matrices_.giveBack(clique);
-    clique.update_matrix = grown;
+    former_.assign(clique.update_matrix, clique.update_matrix + PackedTriangle::length(size - count));
+    update_matrices_.exchange(clique);
+    growByProduct(clique.update_matrix, size, former_.data(), rows_.data(), length, count);
   }
   for (const FactorId f : moved_) leaveOut(clique, f);
 }

@@ -64,6 +64,13 @@ double* BlockPool::take(std::size_t doubles) {
   return reinterpret_cast<double*>(block);
 }
 
+double* BlockPool::exchange(double* data, std::size_t doubles) {
+  const std::size_t room_bytes = reinterpret_cast<Idle*>(data)->tag().lines * kLine_bytes - sizeof(Tag);
+  if (doubles * sizeof(double) <= room_bytes) return data;
+  give(data);
+  return take(doubles + doubles / 8);
+}
+
 void BlockPool::give(double* data) {
   if (!data) return;
   auto* block = reinterpret_cast<Idle*>(data);

@@ -15,6 +15,9 @@ class BlockPool {
  public:
   /// Takes at least `doubles` numbers, uninitialized.
   double* take(std::size_t doubles);
+  /// Gives at least `doubles` numbers for a block, which is the same one if it has the room. Numbers are lost. A larger
+  /// block has an eighth more, so that one that grows little by little seldom moves and leaves few holes behind.
+  double* exchange(double* block, std::size_t doubles);
   /// Returns a block to the pool; null is ignored.
   void give(double* block);
 

@@ -28,7 +28,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   const std::int64_t with_work = result_.scalars;
   const auto mayGoOn = [&] {
     const std::int64_t done = result_.scalars - with_work;
-    return done < most_scalars && (done < EliminationBudget::kLeast || !budget_.timeIsOver());
+    return done < most_scalars && (done < EliminationBudget::kLeast.scalars || !budget_.isOverForSubstitution());
   };
   if (spread == Spread::kAll)
     while (first_waiting_ < waiting_.size() && mayGoOn()) solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
@@ -46,7 +46,9 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
 void BackSubstitution::solveWaiting(VariableId v, double threshold_sigmas) {
   const Solution since = std::exchange(waiting_since_[v.value], 0);
   if (since == 0 || tree_.cliqueOf(v) < 0) return;  // it was solved since, or left the tree
-  solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
+  const Clique& clique = tree_[tree_.cliqueOf(v)];
+  budget_.count(substitutionFlops(clique));
+  solve(clique, since, threshold_sigmas);
 }
 
 /// Solves the cliques with work, which hang together from the roots downwards.

@@ -22,7 +22,7 @@ class BackSubstitution {
     double largest_change = 0;          // of any x, m or rad
   };
 
-  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, const EliminationBudget& budget)
+  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, EliminationBudget& budget)
       : graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
   /// Steps below which cliques are solved: all, or far ones alone, and the rest waits for a call that spreads all.
@@ -51,7 +51,7 @@ class BackSubstitution {
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
-  const EliminationBudget& budget_;
+  EliminationBudget& budget_;
   Result result_;
   Solution newest_ = 0, first_of_call_ = 1;
   std::vector<VariableId> moved_;

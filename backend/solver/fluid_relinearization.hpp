@@ -61,9 +61,10 @@ class FluidRelinearization {
   };
   /// Outcome of a relinearization under the allowances and the budget.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
-  struct EliminationCost {
-    std::int64_t scalars = 0;
-    double flops = 0;
+  /// The allowances count the cliques' volume, apart from the budget.
+  struct Cost {
+    CliqueCost work;
+    double volume = 0;
   };
 
   void lookAt(VariableId v);
@@ -78,7 +79,7 @@ class FluidRelinearization {
   void relinearizeAtRest();
   Reach relinearizeRegion(VariableId worst, double worst_turn_rad, double& flops_left);
   Reach relinearizeWithin(VariableId v, double& flops_left);
-  EliminationCost costOfRelinearizing(VariableId v);
+  Cost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
   void correctResiduals();
   bool waitsForJacobians(const OffModel& off) const;

@@ -56,6 +56,7 @@ class IncrementalSolver {
   struct Report {
     std::vector<SolverProblem> problems;
     std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
+    double flops = 0;  // counted work, see EliminationBudget
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
     double largest_change = 0;   // of any x, m or rad
