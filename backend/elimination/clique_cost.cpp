@@ -17,8 +17,7 @@ constexpr double kFlopsPerMoved = 40, kFlopsPerReflected = 13, kFlopsPerCopied =
 CliqueCost eliminationCost(const Clique& clique) {
   const double n = clique.frontal_size, m = clique.separatorSize() + 1, size = clique.size + 1;
   const double operations = n * n * n / 3 + n * n * m + n * m * m;
-  return {clique.frontal_size,
-          operations + kFlopsPerEntry * (n * size + m * m) + kFlopsPerClique + substitutionFlops(clique)};
+  return {clique.frontal_size, operations + kFlopsPerEntry * (n * size + m * m) + kFlopsPerClique};
 }
 
 double substitutionFlops(const Clique& clique) {

@@ -19,7 +19,7 @@ struct CliqueCost {
   }
 };
 
-/// Cost of eliminating a clique anew and solving for its scalars.
+/// Cost of eliminating a clique anew, without a solution.
 CliqueCost eliminationCost(const Clique& clique);
 /// Flops of substitution in a clique: of a solution with the comparison of its models, or of a new right-hand side.
 double substitutionFlops(const Clique& clique);

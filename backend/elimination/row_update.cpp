@@ -70,17 +70,17 @@ HWY_INLINE void combine(double* to, const double* from, const double* w, int ld,
 
 void growByProductOf(double* to, int size, const double* from, const double* w, int ld, int count) {
   double factors[kRowsAtOnce];
-  for (int j = 0; j < size; ++j) {
+  for (int j = size - 1; j >= 0; --j) {  // so that what is read is not overwritten
     const int n = size - j;
-    const double* base = j < count ? nullptr : from;
+    double* const column = to + std::ptrdiff_t(j) * (2 * size - j + 1) / 2;
+    const double* base =
+        j < count ? nullptr : from + std::ptrdiff_t(j - count) * (2 * (size - count) - j + count + 1) / 2;
     for (int done = 0; done < count; done += kRowsAtOnce)
       withConstant<kRowsAtOnce>(count - done < kRowsAtOnce ? count - done : kRowsAtOnce, [&]<int N>() HWY_ATTR {
         for (int k = 0; k < N; ++k) factors[k] = w[j + (done + k) * ld];
-        combine<N>(to, base, w + j + done * ld, ld, factors, n);
-        base = to;
+        combine<N>(column, base, w + j + done * ld, ld, factors, n);
+        base = column;
       });
-    if (j >= count) from += n;
-    to += n;
   }
 }
 

@@ -12,7 +12,8 @@ namespace motorcade {
 void addRows(const Panel& panel, int first, double* w, int count);
 
 /// Adds an outer product to a symmetric matrix and puts new rows before it: to = [0 0; 0 from] + W^T W. Both are packed
-/// triangles, `to` of `size` rows and `from` of `count` fewer. `w` holds W^T, a column of `ld` numbers for each row.
+/// triangles, `to` of `size` rows and `from` of `count` fewer; both may begin at the same place. `w` holds W^T, a
+/// column of `ld` numbers for each row.
 void growByProduct(double* to, int size, const double* from, const double* w, int ld, int count);
 
 }  // namespace motorcade

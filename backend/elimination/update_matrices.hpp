@@ -29,9 +29,15 @@ class UpdateMatrices {
   /// Takes memory for a clique that may have it still.
   void takeAgain(Clique& clique);
   void giveBack(Clique& clique);
-  /// Takes memory for the clique's present length instead of what it has; the numbers there are lost.
-  void exchange(Clique& clique) {
-    clique.update_matrix = memory_.exchange(clique.update_matrix, clique.updateMatrixLength());
+  /// Calls `enlarge(to, from)` to bring a matrix to the clique's present length: in place, or from one block to
+  /// another.
+  template <class Grow>
+  void grow(Clique& clique, const Grow& enlarge) {
+    double* const former = clique.update_matrix;
+    const bool stays = BlockPool::fits(former, clique.updateMatrixLength());
+    if (!stays) clique.update_matrix = memory_.takeToGrow(clique.updateMatrixLength());
+    enlarge(clique.update_matrix, former);
+    if (!stays) memory_.give(former);
   }
 
   /// Makes the missing matrices again that the clique's front gathers.

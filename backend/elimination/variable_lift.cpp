@@ -1,6 +1,8 @@
 #include "backend/elimination/variable_lift.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "backend/elimination/row_update.hpp"
 
@@ -89,15 +91,18 @@ void VariableLift::takeRows(const Clique& clique, int count) {
 void VariableLift::takeIn(Clique& parent, const Clique& clique, int count) {
   const int n = parent.frontal_size, size = parent.size + count, ld = padded(size + 1);
   const int length = clique.separatorSize() + count + 1;
-  former_.assign(parent.panel, parent.panel + parent.panelLength());
-  double* const panel = parent.panel = panels_.exchange(parent.panel, std::size_t(ld) * (n + count));
-  for (int j = 0; j < n; ++j) {
-    const double* const from = former_.data() + std::size_t(j) * parent.panelStride();
+  const std::size_t doubles = std::size_t(ld) * (n + count);
+  double* const former = parent.panel;
+  const bool stays = BlockPool::fits(former, doubles);
+  double* const panel = parent.panel = stays ? former : panels_.takeToGrow(doubles);
+  for (int j = n - 1; j >= 0; --j) {  // in place, what is read is not overwritten
+    const double* const from = former + std::size_t(j) * parent.panelStride();
     double* const to = panel + std::size_t(j) * ld;
-    std::copy(from + j, from + n, to + j);
+    std::memmove(to + n + count, from + n, (parent.size + 1 - n) * sizeof(double));
+    std::memmove(to + j, from + j, (n - j) * sizeof(double));
     std::fill(to + n, to + n + count, 0.0);
-    std::copy(from + n, from + parent.size + 1, to + n + count);
   }
+  if (!stays) panels_.give(former);
   std::fill(panel + std::size_t(n) * ld, panel + std::size_t(n + count) * ld, 0.0);
   added_.assign(std::size_t(ld) * count, 0.0);
   int first = n;
@@ -122,18 +127,16 @@ void VariableLift::takeIn(Clique& parent, const Clique& clique, int count) {
 /// Makes the clique pass on what the rows that left it say, but for the factors that went with them.
 void VariableLift::passOn(Clique& clique, int count) {
   const int size = clique.separatorSize(), length = size + 1;
-  former_.assign(clique.contribution, clique.contribution + size - count);
-  clique.contribution = panels_.exchange(clique.contribution, size);
+  double* const contribution = panels_.take(size);
   for (int i = 0; i < size; ++i) {
-    clique.contribution[i] = i < count ? 0 : former_[i - count];
+    contribution[i] = i < count ? 0 : clique.contribution[i - count];
     for (int k = 0; k < count; ++k)
-      clique.contribution[i] += rows_[std::size_t(k) * length + i] * rows_[std::size_t(k) * length + size];
+      contribution[i] += rows_[std::size_t(k) * length + i] * rows_[std::size_t(k) * length + size];
   }
-  if (clique.update_matrix) {
-    former_.assign(clique.update_matrix, clique.update_matrix + PackedTriangle::length(size - count));
-    update_matrices_.exchange(clique);
-    growByProduct(clique.update_matrix, size, former_.data(), rows_.data(), length, count);
-  }
+  panels_.give(std::exchange(clique.contribution, contribution));
+  if (clique.update_matrix)
+    update_matrices_.grow(
+        clique, [&](double* to, const double* from) { growByProduct(to, size, from, rows_.data(), length, count); });
   for (const FactorId f : moved_) leaveOut(clique, f);
 }
 

@@ -43,7 +43,6 @@ class VariableLift {
   std::vector<double> added_;  // the same in the rows of a front
   std::vector<int> row_;       // per scalar of a factor: its row in the separator
   std::vector<double> product_;
-  std::vector<double> former_;  // numbers of a matrix that grows
 };
 
 }  // namespace motorcade

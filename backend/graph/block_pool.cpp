@@ -64,11 +64,10 @@ double* BlockPool::take(std::size_t doubles) {
   return reinterpret_cast<double*>(block);
 }
 
-double* BlockPool::exchange(double* data, std::size_t doubles) {
-  const std::size_t room_bytes = reinterpret_cast<Idle*>(data)->tag().lines * kLine_bytes - sizeof(Tag);
-  if (doubles * sizeof(double) <= room_bytes) return data;
-  give(data);
-  return take(doubles + doubles / 8);
+bool BlockPool::fits(const double* data, std::size_t doubles) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(data);
+  const Tag& tag = *std::launder(reinterpret_cast<const Tag*>(begin - sizeof(Tag)));
+  return doubles * sizeof(double) <= tag.lines * kLine_bytes - sizeof(Tag);
 }
 
 void BlockPool::give(double* data) {

@@ -9,18 +9,20 @@ namespace {
 constexpr std::int64_t kSubstitutionsPerElimination = 8;
 /// Most that accumulates, in budgets of one update; with more, an update could cost a multiple of its budget.
 constexpr std::int64_t kMostSaved = 1;
-constexpr double kEliminationShare = 0.5, kSubstitutionShare = 0.8, kMostSavedShare = 0.2;  // of the work
-constexpr double kPaceMemory_ms = 20;  // in which a new pace is found
+constexpr double kEliminationShare = 0.5, kShareWhileLagging = 0.2, kSubstitutionShare = 0.8,
+                 kMostSavedShare = 0.2;  // of the work
+constexpr double kPaceMemory_ms = 20;    // in which a new pace is found
 
 }  // namespace
 
-void EliminationBudget::beginUpdate() {
+void EliminationBudget::beginUpdate(bool estimates_lag) {
   constexpr auto kAll = std::numeric_limits<std::int64_t>::max();
   most_flops_ = params_.flops > 0 ? params_.flops : kUnlimited;
   if (params_.ms > 0) began_ = std::chrono::steady_clock::now();
   if (params_.ms > 0 && paced_ms_ > 0) most_flops_ = std::min(most_flops_, params_.ms * paced_flops_ / paced_ms_);
   done_flops_ = planned_flops_ = 0;
-  left_ = {params_.scalars > 0 ? params_.scalars : kAll, kEliminationShare * most_flops_ + saved_.flops};
+  elimination_share_ = estimates_lag ? kShareWhileLagging : kEliminationShare;
+  left_ = {params_.scalars > 0 ? params_.scalars : kAll, elimination_share_ * most_flops_ + saved_.flops};
   limited_ = params_.scalars > 0 || most_flops_ < kUnlimited;
   substitutions_left_ = kAll;
   if (params_.scalars == 0) return;
@@ -57,7 +59,7 @@ bool EliminationBudget::spentMoreThan(double share) const {
   return done_flops_ > share * most_flops_ || (params_.ms > 0 && spent_ms() > share * params_.ms);
 }
 
-bool EliminationBudget::isOverForEliminations() const { return spentMoreThan(kEliminationShare); }
+bool EliminationBudget::isOverForEliminations() const { return spentMoreThan(elimination_share_); }
 
 bool EliminationBudget::isOverForSubstitution() const { return spentMoreThan(kSubstitutionShare); }
 

@@ -20,14 +20,18 @@ class EliminationBudget {
     /// Time of an update; results then depend on the machine; 0: no limit. It limits the work at the pace of the
     /// updates so far, and the clock is read on the way.
     double ms = 0;
+
+    bool isLimited() const { return scalars > 0 || flops > 0 || ms > 0; }
   };
 
   explicit EliminationBudget(const Params& params) : params_(params) {}
 
-  void beginUpdate();
+  /// `estimates_lag`: where substitution or corrections wait, less of the work is for eliminations.
+  void beginUpdate(bool estimates_lag = false);
   /// Removes all limits for the rest of the update.
   void lift();
   bool limited() const { return limited_; }
+  bool limitsFlops() const { return most_flops_ < kUnlimited; }
 
   /// Eliminations left.
   const CliqueCost& left() const { return left_; }
@@ -40,7 +44,7 @@ class EliminationBudget {
   /// Saves the eliminations left for the next update if a variable waits, else nothing.
   void save(bool variable_waits);
   /// Cost up to which factors are never put off.
-  static constexpr CliqueCost kLeast{.scalars = 600, .flops = 5e6};
+  static constexpr CliqueCost kLeast{.scalars = 600, .flops = 2e7};
 
   std::int64_t substitutionsLeft() const { return substitutions_left_; }
   /// True when so many scalars may still be substituted, and flops be counted.
@@ -71,7 +75,7 @@ class EliminationBudget {
   Params params_;
   CliqueCost left_, saved_;
   std::int64_t substitutions_left_ = 0, saved_substitutions_ = 0;
-  double most_flops_ = kUnlimited, done_flops_ = 0,
+  double most_flops_ = kUnlimited, elimination_share_ = 1, done_flops_ = 0,
          planned_flops_ = 0;  // of the update; the planned ones are among the done
   bool limited_ = false;
   std::chrono::steady_clock::time_point began_;

@@ -111,8 +111,9 @@ void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std:
   });
 }
 
-FluidRelinearization::Corrections FluidRelinearization::correctModels() {
+FluidRelinearization::Corrections FluidRelinearization::correctModels(bool in_any_case) {
   corrections_ = {};
+  corrects_in_any_case_ = in_any_case;
   relinearized_.clear();
   is_relinearized_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
@@ -149,6 +150,7 @@ void FluidRelinearization::correctResiduals() {
   off_.insert(off_.end(), put_off.begin(), put_off.end());
   std::erase_if(off_, [&](const OffModel& off) { return !corrected_.insert(off.factor.value); });  // once each
   budget_.saveSubstitutions(!off_.empty());
+  corrections_wait_ = !put_off.empty();
 }
 
 /// True for a model that is off too far to be corrected before its Jacobian, which the budget puts off. Such a model
@@ -164,11 +166,12 @@ bool FluidRelinearization::reachesResidual(FactorId id) {
   double flops = 0;
   for (int c = tree_.ownerOf(graph_.variablesOf(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
     scalars += tree_[c].frontal_size;
-    flops += 2 * substitutionFlops(tree_[c]);  // downwards, too
-    if (!budget_.affordsSubstitution(scalars, flops)) return false;
+    flops += substitutionFlops(tree_[c]);
+    if (!budget_.affordsSubstitution(scalars, flops) && !corrects_in_any_case_) return false;
   }
   budget_.spendSubstitutions(scalars);
   budget_.count(flops);
+  corrects_in_any_case_ = false;
   return true;
 }
 

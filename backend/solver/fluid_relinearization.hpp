@@ -46,11 +46,14 @@ class FluidRelinearization {
   /// Begins a step. Neither the new factors nor those that wait are in the tree yet.
   void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
   /// Corrects the models that are off, as far as the budget reaches, and marks the cliques' work.
-  Corrections correctModels();
+  /// `in_any_case`: corrects at least one residual, whatever its way to the root costs.
+  Corrections correctModels(bool in_any_case = false);
   /// Forgets everything, as all has been relinearized.
   void clear();
 
   bool anyModelOff() const { return !off_.empty(); }
+  /// True when the budget put residuals off.
+  bool correctionsWait() const { return corrections_wait_; }
   /// Number of variables whose relinearization was put off.
   std::size_t deferred() const { return stale_.size(); }
 
@@ -102,7 +105,8 @@ class FluidRelinearization {
   std::vector<double> staleness_rad_;   // per variable: its turn when it became stale, 0 when it is not
   int next_at_rest_ = 0;                // variable to look at
   double rest_flops_left_ = 0;          // saved up by the steps so far
-  Corrections corrections_;             // of the step at hand
+  bool corrects_in_any_case_ = false, corrections_wait_ = false;
+  Corrections corrections_;  // of the step at hand
   std::vector<FactorId> relinearized_;
   MarkSet compared_, new_factors_, outside_tree_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;

@@ -14,6 +14,7 @@ namespace {
 /// neighbors of one variable that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
 
+constexpr std::int64_t kLag = 600;  // scalars that wait for substitution
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// Problem of a factor over these variables, which is left out.
@@ -76,7 +77,7 @@ void IncrementalSolver::beginReport() {
   report_ = {.problems = std::move(refused_), .eliminated_scalars = -eliminator_.eliminatedScalars()};
   refused_.clear();
   eliminator_.resetWeakestPivot();
-  budget_.beginUpdate();
+  budget_.beginUpdate(relinearization_.anyModelOff() || substitution_.waitingScalars() > kLag);
 }
 
 void IncrementalSolver::note(const Step& step) {
@@ -106,11 +107,12 @@ const IncrementalSolver::Report& IncrementalSolver::update(Correction correction
   beginReport();
   ++counters_.updates;
   spread_ = spreadOfUpdate();
+  corrections_first_ = budget_.limitsFlops() && relinearization_.correctionsWait() && !corrections_first_;
   spread_all_next_ = false;
   const bool fluid = params_.policy == Policy::kFluid;
   const bool batch_due =
       counters_.updates % params_.batch_every_updates == 0 || changes_.variables.size() > kMostAppended;
-  if (fluid) waiting_.admit(changes_.factors, changes_.touched, relinearization_.anyModelOff());
+  if (fluid) waiting_.admit(changes_.factors, changes_.touched, corrections_first_);
   touchVariablesOf(graph_, changes_.factors, changes_.touched);
   note(!fluid && batch_due ? batchStep(changes_.touched) : step(changes_, correction));
   const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
@@ -136,7 +138,7 @@ IncrementalSolver::Step IncrementalSolver::step(const Changes& changes, Correcti
   for (const VariableId v : changes.touched) work_.markRemoved(tree_.cliqueOf(v));
   if (params_.policy == Policy::kFluid) relinearization_.beginStep(changes.factors, waiting_.factors());
   if (params_.policy == Policy::kFluid && correction == Correction::kNow)
-    step.corrections = relinearization_.correctModels();
+    step.corrections = relinearization_.correctModels(corrections_first_);
   const double before = eliminator_.flops();
   work_.apply(eliminator_);
   rebuildTop(changes);

@@ -8,23 +8,20 @@ namespace {
 /// Scalars through which a variable is lifted at once. Between several steps one can see whether there is time left.
 constexpr std::int64_t kLiftedAtOnce = 2000;
 constexpr std::size_t kLeastLifted = 2;  // cliques: from one to the next
-/// Share of the flops for eliminations that factors have while models are off: what has been let in goes first.
-constexpr double kShareBesideCorrections = 0.4;
 /// Flops of an elimination in a new order over those in the former one: the newest variables last make some fill.
 constexpr double kFillOfNewOrder = 1.5;
 
 }  // namespace
 
-void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool models_are_off) {
+void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool corrections_first) {
   marked_.reset(tree_.slots());
   counted_.reset(tree_.slots());
   held_.reset(graph_.slots());
   for (const VariableId v : touched) mark(v);
-  const double share = models_are_off ? kShareBesideCorrections : 1;
   allowance_ = {std::max(budget_.left().scalars, EliminationBudget::kLeast.scalars),
-                std::max(share * budget_.left().flops, EliminationBudget::kLeast.flops)};
+                std::max(budget_.left().flops, EliminationBudget::kLeast.flops)};
   if (budget_.limited()) admitFresh(fresh);
-  admitWaiting(fresh);
+  if (!corrections_first) admitWaiting(fresh);
 }
 
 /// Admits new factors, cheap ones first, as they hold the new variables.

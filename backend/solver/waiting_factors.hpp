@@ -19,8 +19,9 @@ class WaitingFactors {
       : graph_(graph), tree_(tree), eliminator_(eliminator), budget_(budget) {}
 
   /// Leaves those new factors in `fresh` that the next elimination takes in, and adds the ones that waited long enough.
-  /// The cliques of the `touched` variables are eliminated anew in any case.
-  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool models_are_off);
+  /// The cliques of the `touched` variables are eliminated anew in any case. With `corrections_first`, factors that
+  /// wait come no nearer.
+  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool corrections_first);
   /// Takes the waiting factors with one of the variables, which are to leave.
   std::vector<FactorId> takeWith(std::span<const VariableId> variables);
   /// Removes a factor; false when it does not wait.
