@@ -95,7 +95,7 @@ TorusWork driveAround(Torus& torus) {
   return work;
 }
 
-constexpr double kTorusFlops = 6e7, kOverrun = 1.2;
+constexpr double kTorusFlops = 1e8, kOverrun = 1.2;
 
 TEST(CountedBudget, HoldsInEachUpdateOfATorusAndWhatWaitsComesThrough) {
   Torus unlimited(withFlops(0)), torus(withFlops(kTorusFlops));
