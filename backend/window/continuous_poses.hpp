@@ -13,6 +13,8 @@ namespace motorcade {
 /// it is would look like a motion. So a published pose moves by the estimated motion since, and corrections are added
 /// gradually, over `correction_s`; 0 publishes each pose as it is estimated. Covariances contain what is still to be
 /// added: a pose that is known to be off by d has the expected squared error Sigma + d d'.
+///
+/// Frames that were not measured have guessed poses. The first measured frame after them takes back the guess at once.
 class ContinuousPoses {
  public:
   explicit ContinuousPoses(double correction_s) : correction_s_(correction_s) {}
@@ -28,12 +30,12 @@ class ContinuousPoses {
 
  private:
   struct Published {
-    FrameId frame;
-    Timestamp stamp;
+    FrameHead head;
     SE3 T_world;
   };
   SE3 continued(const Published& last, const SE3& then, const SE3& now, const SE3& target, Timestamp stamp,
                 double correction_s) const;
+  bool endsGuess(const FrameHead& now) const;
   void continueCamera(FrameEstimate& online, const EarlierPoses& earlier);
   void widenCamera(CameraCovariances& covariances, const SE3& estimated, const EarlierPoses& earlier,
                    std::optional<FrameId> motion_begin) const;

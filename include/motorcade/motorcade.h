@@ -37,7 +37,7 @@ typedef enum {
   MOTORCADE_ERROR_MEMORY = -4,       // there is no more
   MOTORCADE_ERROR_INTERNAL = -5      // a fault of the library
 } motorcade_code;
-/// The error of this thread's last call that failed: what is wrong and how to mend it, and the field, as
+/// The error of this thread's last call that failed: what is wrong and how to fix it, and the field, as
 /// "camera.baseline_m". Never NULL; the text lives until the next such call.
 const char* motorcade_last_error(void);
 const char* motorcade_last_error_field(void);
@@ -125,7 +125,7 @@ typedef struct {
   size_t struct_size;
   int64_t stamp_ns;                              // on the clock of the pairs
   double speed_mps, yaw_rate_radps;              // of the rear axle's middle: positive ahead; to the left
-  double speed_sigma_mps, yaw_rate_sigma_radps;  // standard deviations; 0: found out
+  double speed_sigma_mps, yaw_rate_sigma_radps;  // standard deviations; 0: estimated
 } motorcade_vehicle_motion;
 /// The vehicle's own motion, which predicts the camera where images fail; see motorcade.hpp. For any thread.
 motorcade_code motorcade_tracker_push_motion(motorcade_tracker* tracker, const motorcade_vehicle_motion* motion,
@@ -160,7 +160,7 @@ typedef struct {
   int64_t frame, stamp_ns;
   motorcade_status status;
   motorcade_cause cause;
-  int segment;                                    // counts up where nothing measured links the poses before and after
+  int segment;                                    // + 1 where no measurement links the poses before and after
   int dropped_before;                             // pairs since the result before that a newer one replaced
   double T_world_cam[12], motion_covariance[36];  // the latter of T_cam(before)_cam(now)
   double velocity[6], velocity_covariance[36];    // own, since the last frame seen, in its axes [m/s], [rad/s]
@@ -169,7 +169,7 @@ typedef struct {
   double latency_ms;    // from push to the result
   const char* problem;  // why the pair was lost or rejected, or the rig is wrong; lives as long as the result
   bool has_pose_covariance;
-  double pose_covariance[36];  // of T_world_cam, relative to the frame that defines the world: grows with the way
+  double pose_covariance[36];  // of T_world_cam, relative to the frame that defines the world: grows with distance
 } motorcade_frame;
 typedef enum { MOTORCADE_STATE_MOVING, MOTORCADE_STATE_STOPPED, MOTORCADE_STATE_PREDICTED } motorcade_state;
 typedef struct {

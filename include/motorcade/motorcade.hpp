@@ -12,7 +12,8 @@
 ///          y left, z up (as ROS wants of bodies)
 ///   world  the first frame's cam
 ///   body   of an object, fixed to it: x in the direction of travel, y left, z up, with either axes
-/// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad], with typical errors of a calibration.
+/// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad]. Those of the camera's pose and motion and of
+/// objects' positions and velocities include typical errors of a calibration; the others do not.
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -28,7 +29,7 @@
 
 namespace motorcade {
 
-/// A request that cannot be met. `field` names the input to mend, as `camera.baseline_m`; the message says how.
+/// A request that cannot be met. `field` names the input to fix, as `camera.baseline_m`; the message says how.
 class MOTORCADE_API Error : public std::runtime_error {
  public:
   Error(std::string field, const std::string& message)
@@ -56,13 +57,13 @@ struct Camera {
   };
   std::optional<Rig> rig{};
   /// Useless pixels of the rectified left image: dead ones, borders, logos. They are so many columns and rows at the
-  /// sides, and the pixels of the mask, row by row, that are not 0. A bonnet is found without it.
+  /// sides, and the pixels of the mask, row by row, that are not 0. A hood is found without it.
   struct Ignored {
     int left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
     std::vector<std::uint8_t> mask{};  // of width_px x height_px, or empty
   };
   Ignored ignored{};
-  /// Standard deviations of the calibration's errors, which stay constant; covariances of poses and objects hold them.
+  /// Standard deviations of the calibration's errors, which stay constant. The covariances named above include them.
   /// Zeros: the calibration is exact. Empty: the values below, or those in `Options::settings`.
   struct Sigmas {
     double focal = 0.002;        // of the focal length of both cameras, as a share
@@ -98,7 +99,7 @@ struct Pair {
 struct VehicleMotion {
   std::int64_t stamp_ns = 0;                             // on the clock of the pairs
   double speed_mps = 0, yaw_rate_radps = 0;              // positive ahead; about the upward axis, to the left
-  double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;  // standard deviations; 0: found out
+  double speed_sigma_mps = 0, yaw_rate_sigma_radps = 0;  // standard deviations; 0: estimated
 };
 
 /// Estimates of one frame, given as soon as they are known.
@@ -106,7 +107,8 @@ struct Result {
   enum class Status { kGood, kLost, kRejected };  // lost and rejected: the pose is predicted, with a wide covariance
   /// Good, but less sure: measured across missing frames (kAfterGap), or by barely enough points (kFewPoints). Lost: no
   /// point is found again, as in the dark (kNoPoints); points do not tell the camera's motion (kUnlinked); an internal
-  /// fault (kFailed). Rejected: the images are unusable (kUnusable). No result has the last two.
+  /// fault (kFailed). Rejected: the images are unusable (kUnusable). Only finals are rejected for the last two: `push`
+  /// refused the pair for its stamp (kOutOfOrder), or a newer pair replaced it (kTooLate).
   enum class Cause { kNone, kAfterGap, kFewPoints, kNoPoints, kUnlinked, kFailed, kUnusable, kOutOfOrder, kTooLate };
   enum class State { kMoving, kStopped, kPredicted };  // stopped: moved before; predicted: not seen in this frame
   enum class Kind { kUnknown, kCar, kLargeVehicle, kTwoWheeler, kPedestrian };
@@ -141,9 +143,9 @@ struct Result {
   std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
   Status status = Status::kGood;
   Cause cause = Cause::kNone;
-  int segment = 0;  // counts up where nothing measured links the poses before and after
+  int segment = 0;  // increases by one where no measurement links the poses before and after
   std::array<double, 12> T_world_cam{};
-  /// Covariance of T_world_cam relative to the frame that defines the world; grows with the way. Empty behind a gap.
+  /// Covariance of T_world_cam relative to the frame that defines the world; grows with distance. Empty after a gap.
   std::optional<std::array<double, 36>> pose_covariance{};
   /// Covariance of T_cam(before)_cam(now). Before is `Options::covariance_frames` ago, or the last result before that.
   std::optional<std::array<double, 36>> motion_covariance{};
@@ -199,7 +201,8 @@ class MOTORCADE_API Tracker {
   /// another unit are. A clock that was set back is followed after four pairs.
   Push push(const Pair& pair) noexcept;
   /// Predicts the camera where images fail. Any thread may call it, at its own rate, late and out of order; a pair
-  /// knows the samples before it. Samples that contradict images are left out and logged. Rejects values out of range.
+  /// knows the samples before it. An accepted sample is stored; if it contradicts the images it is left out, and only
+  /// `log` tells. Rejects values out of range, and samples after `close`.
   Push push_motion(const VehicleMotion& motion) noexcept;
   void close() noexcept;  // no further pair comes: the results of those that were accepted still do
   /// Forgets the drive, what is in flight, and results that nobody took. The next pair, also after `close`, begins a
@@ -214,7 +217,7 @@ class MOTORCADE_API Tracker {
   void on_result(std::function<void(Result)> take);
   /// Sends each frame once and in order, dropped ones too, to this callback when it leaves the smoothing window, the
   /// last ones after `close`. They are as in the final files, without velocity, masks and latency. Later results and
-  /// `done` wait for it. Empty: to nobody. It may call all but `push`, `wait`, ~Tracker.
+  /// `done` wait for it. Empty: to nobody. It may call all but `wait`, `reset`, ~Tracker, and `push` in replay.
   void on_final(std::function<void(Result)> take);
   Counts counts() const noexcept;
 

@@ -49,6 +49,7 @@ void countRows(const ComparedFrame& frame, DetectionErrors& errors) {
     ++errors.rows;
     if (row.object >= 0 && frame.objects[row.object].ever_moves) continue;
     ++errors.false_rows;
+    errors.false_in[row.row.object.track.value].push_back(frame.frame.value);
     errors.false_rows_unlabeled += row.object < 0;
     errors.false_rows_in_ignored += row.in_ignored_area;
   }
@@ -63,6 +64,7 @@ void countLabels(const ComparedFrame& frame, DetectionErrors& errors) {
     if (!object.asked() || object.range_m() > kFar_m) continue;
     const bool is_found = found.contains(static_cast<int>(j)), near = object.range_m() <= kNear_m;
     count(near ? errors.within_30m : errors.from_30_to_50m, is_found);
+    if (near && !is_found) errors.missed_in[object.truth.id].push_back(frame.frame.value);
     constexpr int kFirstFrames = 4;  // in which a tracker may still be confirming the object
     if (object.visible_before >= kFirstFrames)
       count(near ? errors.within_30m_from_fifth : errors.from_30_to_50m_from_fifth, is_found);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,8 @@ struct DetectionErrors {
   int false_rows_in_ignored = 0;  // of these, mostly in an area that the labels leave open
   int id_switches = 0;
   double mota = 0;
+  /// Frames of the false rows by track, and of the labels within 30 m that were not found by label.
+  std::map<std::int64_t, std::vector<std::int64_t>> false_in, missed_in;
 };
 
 MotionErrors motionErrors(const std::vector<ComparedFrame>& frames, std::optional<std::int64_t> label = {});

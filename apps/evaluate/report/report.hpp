@@ -24,6 +24,9 @@ std::string jsonOf(const Evaluation& evaluation);
 /// probability's event, such as "real".
 nlohmann::ordered_json jsonOf(const Reliability& reliability, const char* hits);
 
+/// Counts and shares, and by track and label the frames of what is false or missed.
+nlohmann::ordered_json jsonOf(const DetectionErrors& errors);
+
 // Parts of the table that `tableOf` puts together.
 
 /// Appends a formatted text.
@@ -38,6 +41,8 @@ void printHead(std::string& text, const Evaluation& evaluation);
 void printCamera(std::string& text, const Evaluation& evaluation);
 /// Errors of the objects' motions and speeds.
 void printMotions(std::string& text, const Evaluation& evaluation);
+/// Recall, false rows and id switches, and in which frames the rows are false.
+void printDetection(std::string& text, const Evaluation& evaluation);
 
 /// Writes a run's objects as KITTI tracking results for KITTI's own evaluation: `final/data/NAME.txt` and
 /// `online/data/NAME.txt` in the folder. NAME is that of the sequence's folder. Other sequences' files stay, so that

@@ -88,23 +88,6 @@ Json jsonOf(const std::optional<AccelerationErrors>& errors) {
       {"rows", errors->rows}, {"along_mps2", jsonOf(errors->along_mps2)}, {"yaw_radps2", jsonOf(errors->yaw_radps2)}};
 }
 
-Json jsonOf(const DetectionCounts& counts) {
-  return {{"labels", counts.labels}, {"found", counts.found}, {"recall", counts.recall()}};
-}
-
-Json jsonOf(const DetectionErrors& errors) {
-  return {{"within_30m", jsonOf(errors.within_30m)},
-          {"from_30_to_50m", jsonOf(errors.from_30_to_50m)},
-          {"within_30m_from_fifth_frame", jsonOf(errors.within_30m_from_fifth)},
-          {"from_30_to_50m_from_fifth_frame", jsonOf(errors.from_30_to_50m_from_fifth)},
-          {"rows", errors.rows},
-          {"false_rows", errors.false_rows},
-          {"false_rows_unlabeled", errors.false_rows_unlabeled},
-          {"false_rows_in_dont_care", errors.false_rows_in_ignored},
-          {"id_switches", errors.id_switches},
-          {"mota", errors.mota}};
-}
-
 Json jsonOf(const Hota& hota) {
   return {{"labels", hota.labels}, {"rows", hota.rows},     {"hota", hota.hota},   {"det_a", hota.det_a},
           {"det_re", hota.det_re}, {"det_pr", hota.det_pr}, {"ass_a", hota.ass_a}, {"ass_re", hota.ass_re},

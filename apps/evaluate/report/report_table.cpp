@@ -28,28 +28,6 @@ void printPositions(std::string& text, const KindEvaluation& kind) {
         mean.largest_drift_m.z());
 }
 
-void printRecall(std::string& text, const DetectionCounts& recall) {
-  std::string counts;
-  print(counts, "{:5.1f} % ({}/{})", 100 * recall.recall(), recall.found, recall.labels);
-  print(text, " {:<19}", counts);
-}
-
-void printDetectionLine(std::string& text, const char* kind, const DetectionErrors& errors, bool from_fifth) {
-  print(text, "  {:<8}", kind);
-  printRecall(text, from_fifth ? errors.within_30m_from_fifth : errors.within_30m);
-  printRecall(text, from_fifth ? errors.from_30_to_50m_from_fifth : errors.from_30_to_50m);
-  print(text, " {:6} {:5} {:9} {:8} {:8} {:6.3f}\n", errors.false_rows, errors.rows, errors.false_rows_unlabeled,
-        errors.false_rows_in_ignored, errors.id_switches, errors.mota);
-}
-
-void printDetection(std::string& text, const Evaluation& e) {
-  text += "\ndetection  recall              recall               false    of    false, false in       id   MOTA\n";
-  text += "           to 30 m             30 to 50 m            rows  rows unlabeled DontCare switches\n";
-  printDetectionLine(text, "final", e.final.detection, false);
-  printDetectionLine(text, "online", e.online.detection, true);
-  print(text, "  (online: recall from a label's fifth visible frame on)\n");
-}
-
 void printBoxLine(std::string& text, const char* kind, const BoxErrors& boxes) {
   if (boxes.rows == 0) return;
   print(text, "  {:<18} {:5}  {:6.2f} {:5.1f} %  {:6.2f}  {:6.2f}", kind, boxes.rows, boxes.iou_2d,

@@ -36,6 +36,19 @@ TEST_F(EvaluateDrive, TableJsonAndTruthAreWritten) {
   EXPECT_EQ(readKittiPoses(folder_ / "truth/camera_truth.txt").size(), static_cast<std::size_t>(kFrames));
 }
 
+TEST_F(EvaluateDrive, FramesOfFalseRowsAndMissedLabelsAreNamed) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    if (i < 5 || i == 7) estimate.objects[0].T_world_body = SE3(Eigen::Matrix3d::Identity(), {-30, 1, 60});
+  });
+  const Evaluation evaluation = evaluateRun(options_);
+  const std::string table = tableOf(evaluation);
+  EXPECT_THAT(table, HasSubstr("\n  false rows, final: track 3 in frames 0-4, 7\n"));
+  EXPECT_THAT(table, HasSubstr("\n  missed to 30 m, final: label 7 in frames 0-4, 7\n"));
+  const auto json = nlohmann::json::parse(jsonOf(evaluation))["final"]["detection"];
+  EXPECT_EQ(json["false_in"], R"({"3": [0, 1, 2, 3, 4, 7]})"_json);
+  EXPECT_EQ(json["missed_within_30m_in"], R"({"7": [0, 1, 2, 3, 4, 7]})"_json);
+}
+
 TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
   writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
     estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {100.0 * (i % 2), 0, 0}) * estimate.T_world_cam;

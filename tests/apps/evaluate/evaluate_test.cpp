@@ -165,6 +165,9 @@ TEST_F(EvaluateDrive, MissesSwitchesAndFalseRowsAreCounted) {
   EXPECT_EQ(errors.within_30m.found, kFrames - 8);
   EXPECT_EQ(errors.false_rows, 10);
   EXPECT_EQ(errors.false_rows_unlabeled, 5);
+  using Frames = std::map<std::int64_t, std::vector<std::int64_t>>;
+  EXPECT_EQ(errors.false_in, (Frames{{5, {25, 26, 27, 28, 29}}, {6, {25, 26, 27, 28, 29}}}));
+  EXPECT_EQ(errors.missed_in, (Frames{{7, {0, 1, 2, 3, 4, 5, 10, 11}}}));
   EXPECT_EQ(errors.id_switches, 1);
   EXPECT_NEAR(errors.mota, 1 - (8 + 10 + 1) / 30.0, 1e-12);
 }

@@ -16,6 +16,7 @@ struct Drive {
   static constexpr int kShifted = 10, kMotionFrames = 5;
   inline static const Matrix6d kCovariance = 1e-4 * Matrix6d::Identity();
   double shift_m = 0.5;
+  int unseen = 0;  // frames before the shift
 
   SE3 camera(int frame, int now) const { return at(frame, now < kShifted ? 0 : shift_m); }
   SE3 object(int frame, int now) const { return at(frame + 8, now < kShifted ? 0 : shift_m); }
@@ -28,6 +29,7 @@ struct Drive {
                            .T_world_cam = camera(now, now),
                            .camera_covariances = {},
                            .objects = {}};
+      if (now < kShifted && now >= kShifted - unseen) online.head.status = FrameStatus::kLost;
       ObjectEstimate& seen = online.objects.emplace_back();
       seen.track = TrackId{3};
       seen.T_world_body = object(now, now);
@@ -64,6 +66,17 @@ TEST(ContinuousPoses, ObjectsComeToWhereTheyAreSeenFromTheCamera) {
                         published[i - 1].objects[0].T_world_body.translation())
                            .y()),
               0.2);
+}
+
+TEST(ContinuousPoses, TakeBackAGuessAtOnce) {
+  const Drive drive{.unseen = 2};
+  const auto published = drive.published(0.5);
+  for (int frame = Drive::kShifted; frame < 40; ++frame) {
+    const FrameEstimate& now = published[static_cast<std::size_t>(frame)];
+    EXPECT_THAT(now.T_world_cam.translation(), IsNear(drive.camera(frame, frame).translation(), 1e-9));
+    EXPECT_THAT(now.objects[0].T_world_body.translation(), IsNear(drive.object(frame, frame).translation(), 1e-9));
+  }
+  EXPECT_NEAR((*published[Drive::kShifted].camera_covariances.pose)(1, 1), 1e-4, 1e-6) << "nothing is left to add";
 }
 
 /// A pose's error over its deviation, along y.
