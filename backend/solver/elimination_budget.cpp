@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kSubstitutionsPerElimination = 8;
 /// Most that accumulates, in budgets of one update; with more, an update could cost a multiple of its budget.
 constexpr std::int64_t kMostSaved = 1;
-constexpr double kEliminationShare = 0.5, kShareWhileLagging = 0.2, kSubstitutionShare = 0.8,
+constexpr double kEliminationShare = 0.5, kShareWhileLagging = 0.1, kSubstitutionShare = 0.8,
                  kMostSavedShare = 0.2;  // of the work
 constexpr double kPaceMemory_ms = 20;    // in which a new pace is found
 

@@ -98,6 +98,7 @@ void IncrementalSolver::endReport() {
   report_.waiting_factors = static_cast<int>(waiting_.factors().size());
   report_.waiting_chi2 = waiting_.chi2();
   report_.waiting_scalars = substitution_.waitingScalars();
+  report_.models_off = relinearization_.anyModelOff();
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   problems_.append(graph_, tree_, eliminator_.weakestPivot(), report_.problems);
   changes_.clear();

@@ -64,10 +64,11 @@ class IncrementalSolver {
     int waiting_factors = 0;
     double waiting_chi2 = 0;
     std::int64_t waiting_scalars = 0;  // whose substitution was put off
+    bool models_off = false;           // some are to be corrected in the next update
 
     /// True when a further update would find next to nothing to do.
     bool settled() const {
-      return waiting_factors == 0 && waiting_scalars == 0 && relinearized_factors == 0 && corrected_factors == 0;
+      return waiting_factors == 0 && waiting_scalars == 0 && !models_off && relinearized_factors == 0;
     }
   };
 
