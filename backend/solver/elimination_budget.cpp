@@ -21,7 +21,7 @@ void EliminationBudget::beginUpdate(bool estimates_lag) {
   if (params_.ms > 0) began_ = std::chrono::steady_clock::now();
   if (params_.ms > 0 && paced_ms_ > 0) most_flops_ = std::min(most_flops_, params_.ms * paced_flops_ / paced_ms_);
   done_flops_ = planned_flops_ = 0;
-  elimination_share_ = estimates_lag ? kShareWhileLagging : kEliminationShare;
+  elimination_share_ = estimates_lag || ended_in_substitution_ ? kShareWhileLagging : kEliminationShare;
   left_ = {params_.scalars > 0 ? params_.scalars : kAll, elimination_share_ * most_flops_ + saved_.flops};
   limited_ = params_.scalars > 0 || most_flops_ < kUnlimited;
   substitutions_left_ = kAll;
@@ -64,6 +64,7 @@ bool EliminationBudget::isOverForEliminations() const { return spentMoreThan(eli
 bool EliminationBudget::isOverForSubstitution() const { return spentMoreThan(kSubstitutionShare); }
 
 void EliminationBudget::endUpdate() {
+  ended_in_substitution_ = isOverForSubstitution();
   if (params_.ms > 0) notePace(done_flops_, spent_ms());
 }
 

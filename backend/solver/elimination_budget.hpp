@@ -26,7 +26,7 @@ class EliminationBudget {
 
   explicit EliminationBudget(const Params& params) : params_(params) {}
 
-  /// `estimates_lag`: where substitution or corrections wait, less of the work is for eliminations.
+  /// Where estimates lag, or the update before ended in substitution, less of the work is for eliminations.
   void beginUpdate(bool estimates_lag = false);
   /// Removes all limits for the rest of the update.
   void lift();
@@ -62,7 +62,7 @@ class EliminationBudget {
   bool isOver() const { return spentMoreThan(1); }
   bool isOverForEliminations() const;
   bool isOverForSubstitution() const;
-  /// Ends an update and notes its pace, which matters with a limit of time only.
+  /// Ends an update and notes its pace.
   void endUpdate();
   void notePace(double flops, double ms);
 
@@ -77,7 +77,7 @@ class EliminationBudget {
   std::int64_t substitutions_left_ = 0, saved_substitutions_ = 0;
   double most_flops_ = kUnlimited, elimination_share_ = 1, done_flops_ = 0,
          planned_flops_ = 0;  // of the update; the planned ones are among the done
-  bool limited_ = false;
+  bool limited_ = false, ended_in_substitution_ = false;
   std::chrono::steady_clock::time_point began_;
   double paced_flops_ = 0, paced_ms_ = 0;  // of the updates so far, the newest ones with the most weight
 };

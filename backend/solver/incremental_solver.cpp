@@ -14,7 +14,8 @@ namespace {
 /// neighbors of one variable that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
 
-constexpr std::int64_t kLag = 600;  // scalars that wait for substitution
+/// Scalars that wait for substitution beyond which factors that wait may not take much of a budget.
+constexpr std::int64_t kBehind = 600;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// Problem of a factor over these variables, which is left out.
@@ -77,7 +78,8 @@ void IncrementalSolver::beginReport() {
   report_ = {.problems = std::move(refused_), .eliminated_scalars = -eliminator_.eliminatedScalars()};
   refused_.clear();
   eliminator_.resetWeakestPivot();
-  budget_.beginUpdate(relinearization_.anyModelOff() || substitution_.waitingScalars() > kLag);
+  const bool behind = relinearization_.anyModelOff() || substitution_.waitingScalars() > kBehind;
+  budget_.beginUpdate(relinearization_.correctionsWait() || (behind && !waiting_.factors().empty()));
 }
 
 void IncrementalSolver::note(const Step& step) {

@@ -60,6 +60,20 @@ TEST(EliminationBudget, EndsByTheWorkCounted) {
   EXPECT_FALSE(budget.isOver());
 }
 
+TEST(EliminationBudget, WhatLagsLeavesLessForEliminations) {
+  EliminationBudget budget({.flops = 1e6});
+  budget.beginUpdate(true);
+  EXPECT_EQ(budget.left().flops, 1e5) << "estimates lag";
+  budget.count(7e5);
+  budget.endUpdate();
+  budget.beginUpdate();
+  EXPECT_EQ(budget.left().flops, 5e5);
+  budget.count(9e5);
+  budget.endUpdate();
+  budget.beginUpdate();
+  EXPECT_EQ(budget.left().flops, 1e5) << "substitution was cut short";
+}
+
 TEST(EliminationBudget, PlannedEliminationsCountAsWhatTheyTake) {
   EliminationBudget budget({.flops = 1e6});
   budget.beginUpdate();
