@@ -281,19 +281,19 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v
 /// Cost of the cliques that are eliminated anew only for the variable.
 FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v) {
   counted_.reset(tree_.slots());
-  Cost cost;
+  const bool counts_flops = budget_.limitsFlops();  // they would take a twentieth of an update to count
+  CliqueCost work;
+  double volume = 0;
   for (const FactorId f : graph_.factorsOf(v)) {
     if (new_factors_.contains(f.value)) continue;
     for (int c = tree_.ownerOf(graph_.variablesOf(f)); c >= 0 && !work_.isEliminated(c) && counted_.insert(c);
          c = tree_[c].parent) {
-      if (budget_.limitsFlops())
-        cost.work += eliminationCost(tree_[c]);
-      else
-        cost.work.scalars += tree_[c].frontal_size;  // flops would take a twentieth of an update to count
-      cost.volume += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
+      work.scalars += tree_[c].frontal_size;
+      volume += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
+      if (counts_flops) work.flops += eliminationCost(tree_[c]).flops;
     }
   }
-  return cost;
+  return {work, volume};
 }
 
 /// Moves the variable's linearization point. Its factors get new Jacobians when those of all variables have moved.
