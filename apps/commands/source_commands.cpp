@@ -64,6 +64,8 @@ void addSolve(CLI::App& app, Action& action) {
   command.add_option("--every", options.batch_every_updates, "N of --policy every")->check(CLI::PositiveNumber);
   command.add_option("--budget", options.budget_scalars, "Scalars eliminated per update beyond what new edges ask for")
       ->check(CLI::PositiveNumber);
+  command.add_option("--budget-ms", options.budget_ms, "Time of an update [ms]; what exceeds it waits for later ones")
+      ->check(CLI::PositiveNumber);
   command.add_flag("--batch", options.at_once, "The batch solution: everything at once, until it converges");
   command.add_flag("--updates", options.every_update, "Write the times of every update to the JSON file too");
   command.footer("Example: motorcade solve GRAPH.g2o --out SOLVED.g2o");

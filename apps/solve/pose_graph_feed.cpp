@@ -83,6 +83,12 @@ PoseGraphFeed::Update PoseGraphFeed::next() {
   return update;
 }
 
+PoseGraphFeed::Update PoseGraphFeed::settle() {
+  const double start_ms = threadCpu_ms();
+  const auto& report = solver_.update();
+  return {.cpu_ms = threadCpu_ms() - start_ms, .report = report};
+}
+
 void PoseGraphFeed::feedPose(std::size_t pose, Update& update) {
   const PoseGraphGauge::Part& part = gauge_.parts()[gauge_.partOf(pose)];
   if (part.size == 1) return;

@@ -44,6 +44,8 @@ class PoseGraphFeed {
   bool atEnd() const { return updates_done_ == update_ends_.size(); }
   /// Feeds the next update; there must be one.
   Update next();
+  /// Updates without anything new, for work that a budget put off.
+  Update settle();
 
   IncrementalSolver& solver() { return solver_; }
   const IncrementalSolver& solver() const { return solver_; }

@@ -23,10 +23,13 @@ struct Solution {
   double chi2 = 0, total_ms = 0;
   std::vector<double> update_ms;  // CPU time of each update
   std::vector<std::int64_t> update_eliminated_scalars;
-  /// State after the last update: edges that the budget put off, their chi2, and scalars to substitute.
+  /// State after the graph's last update: edges that the budget put off, their chi2, and scalars to substitute.
   int waiting_edges = 0;
   double waiting_chi2 = 0;
   std::int64_t waiting_scalars = 0;
+  /// CPU time of each update after that, until nothing waits; with a budget alone. The solution is that of the last
+  /// one.
+  std::vector<double> settling_ms;
   std::vector<SolveProblem> problems;  // of the file, then of the solution
   std::vector<SolveProblem> unsolved;  // those for which it is no solution
   std::vector<PoseGraph::Vertex> vertices;

@@ -24,7 +24,7 @@ IncrementalSolver::Params solverParams(const SolveOptions& options) {
     if (options.policy != "every") throw UsageError("--every goes with --policy every");
     params.batch_every_updates = options.batch_every_updates;
   }
-  params.budget.scalars = options.budget_scalars;
+  params.budget = {.scalars = options.budget_scalars, .ms = options.budget_ms};
   return params;
 }
 
@@ -54,6 +54,9 @@ std::string textOf(const Solution& solution) {
   if (solution.waiting_edges > 0 || solution.waiting_scalars > 0)
     text += fmt::format("put off by the budget: {} edges, whose chi2 is {:.6g}, and {} scalars to substitute\n",
                         solution.waiting_edges, solution.waiting_chi2, solution.waiting_scalars);
+  if (!solution.settling_ms.empty())
+    text += fmt::format("settled in {} further updates: max {:.3f} ms\n", solution.settling_ms.size(),
+                        std::ranges::max(solution.settling_ms));
   if (!solution.problems.empty()) text += std::to_string(solution.problems.size()) + " problems\n";
   for (const auto& problem : solution.problems) text += "  " + problem.name + ": " + problem.detail + "\n";
   return text;
@@ -76,6 +79,10 @@ std::string jsonOf(const Solution& solution, const SolveOptions& options) {
                                  {"waiting_edges", solution.waiting_edges},
                                  {"waiting_chi2", solution.waiting_chi2},
                                  {"waiting_scalars", solution.waiting_scalars}};
+  if (!solution.settling_ms.empty()) {
+    json["settling_updates"] = solution.settling_ms.size();
+    json["settling_max_ms"] = std::ranges::max(solution.settling_ms);
+  }
   json["problems"] = nlohmann::ordered_json::array();
   for (const auto& p : solution.problems)
     json["problems"].push_back({{"kind", p.kind}, {"name", p.name}, {"detail", p.detail}, {"poses", p.poses}});

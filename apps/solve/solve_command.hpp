@@ -13,6 +13,7 @@ struct SolveOptions {
   std::string policy = "fluid";
   int batch_every_updates = 0;      // 0: the solver's own
   std::int64_t budget_scalars = 0;  // 0: no limit
+  double budget_ms = 0;             // 0: no limit
   bool at_once = false, every_update = false;
 };
 

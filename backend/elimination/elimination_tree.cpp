@@ -86,6 +86,15 @@ bool EliminationTree::putBehind(VariableId v, int clique) {
   return true;
 }
 
+void EliminationTree::moveFrontalUp(int clique) {
+  Clique &below = cliques_[clique], &above = cliques_[below.parent];
+  const VariableId v = below.frontalVariables().back();
+  --below.frontals;
+  above.variables.insert(above.variables.begin() + above.frontals, v);
+  ++above.frontals;
+  clique_of_[v.value] = below.parent;
+}
+
 void EliminationTree::forget(VariableId v) {
   clique_of_[v.value] = -1;
   sequence_[v.value] = -1;

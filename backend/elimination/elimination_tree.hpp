@@ -39,6 +39,9 @@ class EliminationTree {
   /// Puts a variable behind those of a clique and before all that are above it. Returns false, and does nothing, when
   /// the order has no room left there.
   bool putBehind(VariableId v, int clique);
+  /// Makes the last frontal variable of a clique the last one of its parent's frontals. Factors, rows and matrices are
+  /// up to the caller.
+  void moveFrontalUp(int clique);
   /// Forgets a variable that is gone; its id may be used again.
   void forget(VariableId v);
 

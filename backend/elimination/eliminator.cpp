@@ -1,6 +1,7 @@
 #include "backend/elimination/eliminator.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "backend/elimination/dense_substitution.hpp"
 
@@ -15,6 +16,7 @@ std::span<const int> Eliminator::eliminate(const Elimination& problem) {
   created_.clear();
   if (problem.order.empty()) return created_;
   update_matrices_.beginElimination();
+  flops_ += kFlopsPerOrdered * static_cast<double>(problem.order.size());
   for (const auto& group : pattern_.groups()) created_.push_back(addClique(problem, group));
   const auto cliqueOfTerm = [&](std::size_t term) { return created_[pattern_.groupOfTerm(static_cast<int>(term))]; };
   for (std::size_t f = 0; f < problem.factors.size(); ++f) tree_.addFactor(cliqueOfTerm(f), problem.factors[f]);
@@ -91,18 +93,21 @@ void Eliminator::release(Clique& clique) {
 }
 
 bool Eliminator::lift(VariableId v, std::span<const int> cliques) {
-  const int top = cliques.back(), parent = tree_[top].parent;
-  if (!tree_.putBehind(v, top)) return false;
-  const auto separator = tree_[top].separator();
-  const std::vector<VariableId> boundary(separator.begin(), separator.end());
-  const auto& removed = remove(cliques);
-  eliminate({.order = removed.variables,
-             .boundary = boundary,
-             .factors = removed.factors,
-             .orphans = removed.orphans,
-             .parent = parent,
-             .renumber = false});
+  if (!std::ranges::all_of(cliques, [&](int c) { return tree_[c].singular.empty(); })) return false;
+  if (!tree_.putBehind(v, cliques.back())) return false;
+  lift_.moveToEnd(cliques.front(), v);
+  for (const int c : cliques) flops_ += liftCost(tree_[c], graph_.sizeOf(v)).flops;
+  for (const int c : cliques.first(cliques.size() - 1)) {
+    lift_.moveToParent(c);
+    if (tree_[c].frontals == 0) dissolve(c);
+  }
   return true;
+}
+
+/// Removes a clique that has no frontals left, and hangs its children below its parent.
+void Eliminator::dissolve(int id) {
+  const int parent = tree_[id].parent;
+  for (const int orphan : remove(std::array{id}).orphans) attach(orphan, parent);
 }
 
 EliminationTree::Removed& Eliminator::remove(std::span<const int> cliques) {
@@ -129,7 +134,9 @@ void Eliminator::refresh(int id) {
   update_matrices_.takeAgain(clique);
   weakest_pivot_ = std::min(weakest_pivot_, front_.eliminate(clique));
   update_matrices_.giveBackMadeAgainBelow(clique);
-  eliminated_scalars_ += clique.frontal_size;
+  const CliqueCost cost = eliminationCost(clique);
+  eliminated_scalars_ += cost.scalars;
+  flops_ += cost.flops;
 }
 
 void Eliminator::shiftRightHandSide(int id, std::span<double> change, std::span<double> parent_change) {

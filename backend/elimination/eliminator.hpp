@@ -5,10 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "backend/elimination/clique_cost.hpp"
 #include "backend/elimination/elimination_pattern.hpp"
 #include "backend/elimination/elimination_tree.hpp"
 #include "backend/elimination/front.hpp"
 #include "backend/elimination/update_matrices.hpp"
+#include "backend/elimination/variable_lift.hpp"
 #include "backend/graph/block_pool.hpp"
 #include "backend/graph/factor_graph.hpp"
 
@@ -39,7 +41,7 @@ class Eliminator {
   std::span<const int> eliminate(const Elimination& problem);
   /// Moves a variable up the tree: it becomes the last of the variables of these cliques, its own and the next ones
   /// above it. What R says stays, and nothing above the cliques changes. Returns false, and does nothing, when the
-  /// order has no room left there.
+  /// order has no room left there or a scalar has no information. See VariableLift.
   bool lift(VariableId v, std::span<const int> cliques);
   /// See EliminationTree.
   EliminationTree::Removed& remove(std::span<const int> cliques);
@@ -59,6 +61,7 @@ class Eliminator {
   double weakestPivot() const { return weakest_pivot_; }
   void resetWeakestPivot() { weakest_pivot_ = 1; }
   std::int64_t eliminatedScalars() const { return eliminated_scalars_; }  // ever
+  double flops() const { return flops_; }                                 // of eliminations and lifts, ever
   std::size_t factorBytes() const { return pool_.usedBytes(); }           // of R and what it leaves over
   std::size_t heldBytes() const { return pool_.heldBytes() + update_matrices_.heldBytes(); }
 
@@ -68,14 +71,17 @@ class Eliminator {
   void attach(int clique, int parent);
   void layOut(Clique& clique);
   void release(Clique& clique);
+  void dissolve(int clique);
 
   const FactorGraph& graph_;
   EliminationTree& tree_;
   Front front_;
   UpdateMatrices update_matrices_;
   BlockPool pool_;  // apart: panels stay for as long as their variables, most update matrices do not
+  VariableLift lift_{graph_, tree_, pool_, update_matrices_};
   EliminationPattern pattern_;
   std::int64_t eliminated_scalars_ = 0;
+  double flops_ = 0;
   double weakest_pivot_ = 1;
   // Scratch.
   std::vector<int> position_;  // per variable: in the elimination at hand, or its first scalar in a clique

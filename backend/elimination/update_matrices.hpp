@@ -29,6 +29,16 @@ class UpdateMatrices {
   /// Takes memory for a clique that may have it still.
   void takeAgain(Clique& clique);
   void giveBack(Clique& clique);
+  /// Calls `enlarge(to, from)` to bring a matrix to the clique's present length: in place, or from one block to
+  /// another.
+  template <class Grow>
+  void grow(Clique& clique, const Grow& enlarge) {
+    double* const former = clique.update_matrix;
+    const bool stays = BlockPool::fits(former, clique.updateMatrixLength());
+    if (!stays) clique.update_matrix = memory_.takeToGrow(clique.updateMatrixLength());
+    enlarge(clique.update_matrix, former);
+    if (!stays) memory_.give(former);
+  }
 
   /// Makes the missing matrices again that the clique's front gathers.
   void makeBelow(const Clique& clique);

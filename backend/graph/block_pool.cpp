@@ -64,6 +64,12 @@ double* BlockPool::take(std::size_t doubles) {
   return reinterpret_cast<double*>(block);
 }
 
+bool BlockPool::fits(const double* data, std::size_t doubles) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(data);
+  const Tag& tag = *std::launder(reinterpret_cast<const Tag*>(begin - sizeof(Tag)));
+  return doubles * sizeof(double) <= tag.lines * kLine_bytes - sizeof(Tag);
+}
+
 void BlockPool::give(double* data) {
   if (!data) return;
   auto* block = reinterpret_cast<Idle*>(data);

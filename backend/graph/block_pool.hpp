@@ -15,6 +15,11 @@ class BlockPool {
  public:
   /// Takes at least `doubles` numbers, uninitialized.
   double* take(std::size_t doubles);
+  /// True when a block that is out has room for so many numbers.
+  static bool fits(const double* block, std::size_t doubles);
+  /// Takes an eighth more than asked for, so that a block that grows little by little seldom moves and leaves few
+  /// holes.
+  double* takeToGrow(std::size_t doubles) { return take(doubles + doubles / 8); }
   /// Returns a block to the pool; null is ignored.
   void give(double* block);
 

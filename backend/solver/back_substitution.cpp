@@ -28,7 +28,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   const std::int64_t with_work = result_.scalars;
   const auto mayGoOn = [&] {
     const std::int64_t done = result_.scalars - with_work;
-    return done < most_scalars && (done < EliminationBudget::kLeast || !budget_.timeIsOver());
+    return done < most_scalars && hasTime();
   };
   if (spread == Spread::kAll)
     while (first_waiting_ < waiting_.size() && mayGoOn()) solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
@@ -49,7 +49,8 @@ void BackSubstitution::solveWaiting(VariableId v, double threshold_sigmas) {
   solve(tree_[tree_.cliqueOf(v)], since, threshold_sigmas);
 }
 
-/// Solves the cliques with work, which hang together from the roots downwards.
+/// Solves the cliques with work, which hang together from the roots downwards. Without time left, those farther down
+/// wait like others.
 void BackSubstitution::solveWork(double threshold_sigmas) {
   open_.clear();
   for (const int root : tree_.roots())
@@ -61,7 +62,13 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
     Solution since = first_of_call_;
     for (const VariableId v : clique.frontalVariables())
       if (waiting_since_[v.value] > 0) since = std::min(since, waiting_since_[v.value]);
-    solve(clique, since, threshold_sigmas);
+    if (result_.scalars < EliminationBudget::kLeast.scalars || !budget_.isOver()) {
+      solve(clique, since, threshold_sigmas);
+      continue;
+    }
+    putOff(clique, since);
+    for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling)
+      if (work_.has(child)) open_.push_back(child);
   }
 }
 
@@ -77,6 +84,7 @@ void BackSubstitution::solve(const Clique& clique, Solution since, double thresh
   x_frontal_.resize(clique.frontal_size);
   backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());
   result_.scalars += clique.frontal_size;
+  budget_.count(substitutionFlops(clique));
   moveVariables(clique, threshold_sigmas);
   for (int child = clique.first_child; child >= 0; child = tree_[child].next_sibling) {
     const auto anyIn = [&](const std::vector<Solution>& by) {
@@ -94,6 +102,10 @@ void BackSubstitution::putOff(const Clique& clique, Solution since) {
     if (waiting_since == 0) waiting_.push_back(v);
     waiting_since = waiting_since == 0 ? since : std::min(waiting_since, since);
   }
+}
+
+bool BackSubstitution::hasTime() const {
+  return result_.scalars < EliminationBudget::kLeast.scalars || !budget_.isOverForSubstitution();
 }
 
 bool BackSubstitution::hasFollowed(FactorId factor) const {

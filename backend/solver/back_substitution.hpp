@@ -22,12 +22,12 @@ class BackSubstitution {
     double largest_change = 0;          // of any x, m or rad
   };
 
-  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, const EliminationBudget& budget)
+  BackSubstitution(FactorGraph& graph, const EliminationTree& tree, CliqueWork& work, EliminationBudget& budget)
       : graph_(graph), tree_(tree), work_(work), budget_(budget) {}
 
   /// Steps below which cliques are solved: all, or far ones alone, and the rest waits for a call that spreads all.
   enum class Spread : char { kAll, kFar };
-  /// Solves all cliques with work, and up to about `most_scalars` below them, as long as there is time. A variable has
+  /// Solves the cliques with work, and up to about `most_scalars` below them, as long as there is time. A variable has
   /// moved when a component of its step since it moved last exceeds `threshold_sigmas` conditional standard deviations,
   /// and far beyond four times that. Smaller steps do not spread.
   Result operator()(double threshold_sigmas, std::int64_t most_scalars, Spread spread = Spread::kAll);
@@ -41,6 +41,7 @@ class BackSubstitution {
   using Solution = std::int64_t;  // number of a solved clique, counted over all calls
 
   void solveWork(double threshold_sigmas);
+  bool hasTime() const;
   /// Solves a clique whose separator may have moved by that solution or a later one.
   void solve(const Clique& clique, Solution since, double threshold_sigmas);
   void moveVariables(const Clique& clique, double threshold_sigmas);
@@ -51,7 +52,7 @@ class BackSubstitution {
   FactorGraph& graph_;
   const EliminationTree& tree_;
   CliqueWork& work_;
-  const EliminationBudget& budget_;
+  EliminationBudget& budget_;
   Result result_;
   Solution newest_ = 0, first_of_call_ = 1;
   std::vector<VariableId> moved_;

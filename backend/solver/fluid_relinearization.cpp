@@ -46,7 +46,7 @@ void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
   compareThoseThatFollowed(step.solved);
   to_look_at_.insert(to_look_at_.end(), step.moved.begin(), step.moved.end());
   std::size_t seen = 0;
-  for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.timeIsOver()); ++seen)
+  for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.isOver()); ++seen)
     if (graph_.contains(to_look_at_[seen])) lookAt(to_look_at_[seen]);
   to_look_at_.erase(to_look_at_.begin(), to_look_at_.begin() + static_cast<std::ptrdiff_t>(seen));
 }
@@ -111,8 +111,9 @@ void FluidRelinearization::beginStep(std::span<const FactorId> new_factors, std:
   });
 }
 
-FluidRelinearization::Corrections FluidRelinearization::correctModels() {
+FluidRelinearization::Corrections FluidRelinearization::correctModels(bool in_any_case) {
   corrections_ = {};
+  corrects_in_any_case_ = in_any_case;
   relinearized_.clear();
   is_relinearized_.reset(graph_.factorSlots());
   staleness_rad_.resize(graph_.slots(), 0.0);
@@ -149,6 +150,7 @@ void FluidRelinearization::correctResiduals() {
   off_.insert(off_.end(), put_off.begin(), put_off.end());
   std::erase_if(off_, [&](const OffModel& off) { return !corrected_.insert(off.factor.value); });  // once each
   budget_.saveSubstitutions(!off_.empty());
+  corrections_wait_ = !put_off.empty();
 }
 
 /// True for a model that is off too far to be corrected before its Jacobian, which the budget puts off. Such a model
@@ -161,11 +163,15 @@ bool FluidRelinearization::waitsForJacobians(const OffModel& off) const {
 bool FluidRelinearization::reachesResidual(FactorId id) {
   if (!budget_.limited()) return true;
   std::int64_t scalars = 0;
+  double flops = 0;
   for (int c = tree_.ownerOf(graph_.variablesOf(id)); c >= 0 && !work_.has(c); c = tree_[c].parent) {
     scalars += tree_[c].frontal_size;
-    if (scalars > budget_.substitutionsLeft()) return false;
+    flops += substitutionFlops(tree_[c]);
+    if (!budget_.affordsSubstitution(scalars, flops) && !corrects_in_any_case_) return false;
   }
   budget_.spendSubstitutions(scalars);
+  budget_.count(flops);
+  corrects_in_any_case_ = false;
   return true;
 }
 
@@ -204,7 +210,7 @@ void FluidRelinearization::relinearizeStale() {
 void FluidRelinearization::relinearizeWhatIsFree() {
   for (const int c : work_.removed())
     for (const VariableId v : tree_[c].frontalVariables())
-      if (isStale(v) && costOfRelinearizing(v).scalars == 0) relinearize(v);
+      if (isStale(v) && costOfRelinearizing(v).work.scalars == 0) relinearize(v);
 }
 
 /// Relinearizes the worst first, as far as the allowances reach. Variables so far off that the solution suffers have
@@ -263,28 +269,31 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
 }
 
 FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v, double& flops_left) {
-  const EliminationCost cost = costOfRelinearizing(v);
-  if (cost.scalars > budget_.left()) return Reach::kBeyondBudget;
-  if (cost.flops > flops_left) return Reach::kBeyondAllowance;
-  budget_.spend(cost.scalars);
-  flops_left -= cost.flops;
+  const Cost cost = costOfRelinearizing(v);
+  if (!budget_.affords(cost.work)) return Reach::kBeyondBudget;
+  if (cost.volume > flops_left) return Reach::kBeyondAllowance;
+  budget_.plan(cost.work);
+  flops_left -= cost.volume;
   relinearize(v);
   return Reach::kWithin;
 }
 
 /// Cost of the cliques that are eliminated anew only for the variable.
-FluidRelinearization::EliminationCost FluidRelinearization::costOfRelinearizing(VariableId v) {
+FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v) {
   counted_.reset(tree_.slots());
-  EliminationCost cost;
+  const bool counts_flops = budget_.limitsFlops();  // they would take a twentieth of an update to count
+  CliqueCost work;
+  double volume = 0;
   for (const FactorId f : graph_.factorsOf(v)) {
     if (new_factors_.contains(f.value)) continue;
     for (int c = tree_.ownerOf(graph_.variablesOf(f)); c >= 0 && !work_.isEliminated(c) && counted_.insert(c);
          c = tree_[c].parent) {
-      cost.scalars += tree_[c].frontal_size;
-      cost.flops += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
+      work.scalars += tree_[c].frontal_size;
+      volume += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
+      if (counts_flops) work.flops += eliminationCost(tree_[c]).flops;
     }
   }
-  return cost;
+  return {work, volume};
 }
 
 /// Moves the variable's linearization point. Its factors get new Jacobians when those of all variables have moved.
@@ -295,6 +304,7 @@ void FluidRelinearization::relinearize(VariableId v) {
   for (const FactorId f : graph_.factorsOf(v)) {
     if (!is_relinearized_.insert(f.value)) continue;
     relinearized_.push_back(f);
+    budget_.count(kFlopsPerLinearized);
     if (!new_factors_.contains(f.value)) work_.markRefresh(tree_.ownerOf(graph_.variablesOf(f)));
   }
 }

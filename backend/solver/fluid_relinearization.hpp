@@ -46,11 +46,14 @@ class FluidRelinearization {
   /// Begins a step. Neither the new factors nor those that wait are in the tree yet.
   void beginStep(std::span<const FactorId> new_factors, std::span<const FactorId> waiting);
   /// Corrects the models that are off, as far as the budget reaches, and marks the cliques' work.
-  Corrections correctModels();
+  /// `in_any_case`: corrects at least one residual, whatever its way to the root costs.
+  Corrections correctModels(bool in_any_case = false);
   /// Forgets everything, as all has been relinearized.
   void clear();
 
   bool anyModelOff() const { return !off_.empty(); }
+  /// True when the budget put residuals off.
+  bool correctionsWait() const { return corrections_wait_; }
   /// Number of variables whose relinearization was put off.
   std::size_t deferred() const { return stale_.size(); }
 
@@ -61,9 +64,10 @@ class FluidRelinearization {
   };
   /// Outcome of a relinearization under the allowances and the budget.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
-  struct EliminationCost {
-    std::int64_t scalars = 0;
-    double flops = 0;
+  /// The allowances count the cliques' volume, apart from the budget.
+  struct Cost {
+    CliqueCost work;
+    double volume = 0;
   };
 
   void lookAt(VariableId v);
@@ -78,7 +82,7 @@ class FluidRelinearization {
   void relinearizeAtRest();
   Reach relinearizeRegion(VariableId worst, double worst_turn_rad, double& flops_left);
   Reach relinearizeWithin(VariableId v, double& flops_left);
-  EliminationCost costOfRelinearizing(VariableId v);
+  Cost costOfRelinearizing(VariableId v);
   void relinearize(VariableId v);
   void correctResiduals();
   bool waitsForJacobians(const OffModel& off) const;
@@ -101,7 +105,8 @@ class FluidRelinearization {
   std::vector<double> staleness_rad_;   // per variable: its turn when it became stale, 0 when it is not
   int next_at_rest_ = 0;                // variable to look at
   double rest_flops_left_ = 0;          // saved up by the steps so far
-  Corrections corrections_;             // of the step at hand
+  bool corrects_in_any_case_ = false, corrections_wait_ = false;
+  Corrections corrections_;  // of the step at hand
   std::vector<FactorId> relinearized_;
   MarkSet compared_, new_factors_, outside_tree_, is_relinearized_, corrected_;  // factors
   std::vector<VariableId> region_;

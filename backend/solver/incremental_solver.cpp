@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <limits>
 
 #include "backend/graph/sort_unique.hpp"
@@ -15,6 +14,8 @@ namespace {
 /// neighbors of one variable that is eliminated before them, at the cost of a dense system.
 constexpr std::size_t kMostAppended = 200;
 
+/// Scalars that wait for substitution beyond which factors that wait may not take much of a budget.
+constexpr std::int64_t kBehind = 600;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// Problem of a factor over these variables, which is left out.
@@ -36,15 +37,6 @@ void touchVariablesOf(const FactorGraph& graph, std::span<const FactorId> factor
   for (const FactorId f : factors)
     touched.insert(touched.end(), graph.variablesOf(f).begin(), graph.variablesOf(f).end());
   sortUnique(touched);
-}
-
-template <class Elimination>
-void notingPace(EliminationBudget& budget, const Eliminator& eliminator, const Elimination& eliminate) {
-  const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t before = eliminator.eliminatedScalars();
-  eliminate();
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-  budget.notePace(eliminator.eliminatedScalars() - before, took.count());
 }
 
 }  // namespace
@@ -86,7 +78,8 @@ void IncrementalSolver::beginReport() {
   report_ = {.problems = std::move(refused_), .eliminated_scalars = -eliminator_.eliminatedScalars()};
   refused_.clear();
   eliminator_.resetWeakestPivot();
-  budget_.beginUpdate();
+  const bool behind = relinearization_.anyModelOff() || substitution_.waitingScalars() > kBehind;
+  budget_.beginUpdate(relinearization_.correctionsWait() || (behind && !waiting_.factors().empty()));
 }
 
 void IncrementalSolver::note(const Step& step) {
@@ -101,10 +94,13 @@ void IncrementalSolver::note(const Step& step) {
 
 void IncrementalSolver::endReport() {
   report_.eliminated_scalars += eliminator_.eliminatedScalars();
+  report_.flops = budget_.doneFlops();
+  budget_.endUpdate();
   report_.deferred_variables = static_cast<int>(relinearization_.deferred());
   report_.waiting_factors = static_cast<int>(waiting_.factors().size());
   report_.waiting_chi2 = waiting_.chi2();
   report_.waiting_scalars = substitution_.waitingScalars();
+  report_.models_off = relinearization_.anyModelOff();
   if (report_.relinearized_factors > 0) ++counters_.relinearizations;
   problems_.append(graph_, tree_, eliminator_.weakestPivot(), report_.problems);
   changes_.clear();
@@ -114,18 +110,20 @@ const IncrementalSolver::Report& IncrementalSolver::update(Correction correction
   beginReport();
   ++counters_.updates;
   spread_ = spreadOfUpdate();
+  corrections_first_ = budget_.limitsFlops() && relinearization_.correctionsWait() && !corrections_first_;
   spread_all_next_ = false;
   const bool fluid = params_.policy == Policy::kFluid;
   const bool batch_due =
       counters_.updates % params_.batch_every_updates == 0 || changes_.variables.size() > kMostAppended;
-  if (fluid) notingPace(budget_, eliminator_, [&] { waiting_.admit(changes_.factors, changes_.touched); });
+  if (fluid) waiting_.admit(changes_.factors, changes_.touched, corrections_first_);
   touchVariablesOf(graph_, changes_.factors, changes_.touched);
   note(!fluid && batch_due ? batchStep(changes_.touched) : step(changes_, correction));
   const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
   const auto costsLittle = [&] {
     return params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars;
   };
-  for (int i = 1; i < steps && relinearization_.anyModelOff() && costsLittle(); ++i) note(step({}, correction));
+  for (int i = 1; i < steps && relinearization_.anyModelOff() && costsLittle() && !budget_.isOverForEliminations(); ++i)
+    note(step({}, correction));
   endReport();
   return report_;
 }
@@ -143,11 +141,11 @@ IncrementalSolver::Step IncrementalSolver::step(const Changes& changes, Correcti
   for (const VariableId v : changes.touched) work_.markRemoved(tree_.cliqueOf(v));
   if (params_.policy == Policy::kFluid) relinearization_.beginStep(changes.factors, waiting_.factors());
   if (params_.policy == Policy::kFluid && correction == Correction::kNow)
-    step.corrections = relinearization_.correctModels();
-  notingPace(budget_, eliminator_, [&] {
-    work_.apply(eliminator_);
-    rebuildTop(changes);
-  });
+    step.corrections = relinearization_.correctModels(corrections_first_);
+  const double before = eliminator_.flops();
+  work_.apply(eliminator_);
+  rebuildTop(changes);
+  budget_.finishPlanned(eliminator_.flops() - before);
   step.spread_sigmas = params_.substitution_tolerance * graph_.models().rmsResidual();
   step.solved = substitute(step.spread_sigmas, params_.spread_scalars > 0 ? params_.spread_scalars : kNoLimit, spread_);
   return step;

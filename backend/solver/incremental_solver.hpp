@@ -56,6 +56,7 @@ class IncrementalSolver {
   struct Report {
     std::vector<SolverProblem> problems;
     std::int64_t eliminated_scalars = 0, substituted_scalars = 0;
+    double flops = 0;  // counted work, see EliminationBudget
     int relinearized_variables = 0, relinearized_factors = 0, corrected_factors = 0;
     int deferred_variables = 0;  // whose relinearization the budget put off
     double largest_change = 0;   // of any x, m or rad
@@ -63,6 +64,12 @@ class IncrementalSolver {
     int waiting_factors = 0;
     double waiting_chi2 = 0;
     std::int64_t waiting_scalars = 0;  // whose substitution was put off
+    bool models_off = false;           // some are to be corrected in the next update
+
+    /// True when a further update would find next to nothing to do.
+    bool settled() const {
+      return waiting_factors == 0 && waiting_scalars == 0 && !models_off && relinearized_factors == 0;
+    }
   };
 
   explicit IncrementalSolver(const Params& params) : params_(params) {}
@@ -155,7 +162,8 @@ class IncrementalSolver {
   double spread_sigmas_ = 0;                                          // of the newest step
   BackSubstitution::Spread spread_ = BackSubstitution::Spread::kAll;  // of the update at hand
   bool spread_all_next_ = false;
-  Changes changes_;  // since the last update, as well as the factors that were left out
+  bool corrections_first_ = false;  // in the update at hand: factors that wait come no nearer
+  Changes changes_;                 // since the last update, as well as the factors that were left out
   std::vector<SolverProblem> refused_;
   std::vector<VariableId> near_root_;  // scratch: variables that an order puts there
 };

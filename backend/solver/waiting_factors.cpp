@@ -7,31 +7,33 @@ namespace {
 
 /// Scalars through which a variable is lifted at once. Between several steps one can see whether there is time left.
 constexpr std::int64_t kLiftedAtOnce = 2000;
+constexpr std::size_t kLeastLifted = 2;  // cliques: from one to the next
+/// Flops of an elimination in a new order over those in the former one: the newest variables last make some fill.
+constexpr double kFillOfNewOrder = 1.5;
 
 }  // namespace
 
-void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched) {
-  allowance_ = std::max(budget_.left(), EliminationBudget::kLeast);
+void WaitingFactors::admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool corrections_first) {
   marked_.reset(tree_.slots());
   counted_.reset(tree_.slots());
   held_.reset(graph_.slots());
-  for (const VariableId v : touched)
-    for (int c = tree_.cliqueOf(v); c >= 0 && marked_.insert(c); c = tree_[c].parent) {
-    }
+  for (const VariableId v : touched) mark(v);
+  allowance_ = {std::max(budget_.left().scalars, EliminationBudget::kLeast.scalars),
+                std::max(budget_.left().flops, EliminationBudget::kLeast.flops)};
   if (budget_.limited()) admitFresh(fresh);
-  admitWaiting(fresh);
+  if (!corrections_first) admitWaiting(fresh);
 }
 
 /// Admits new factors, cheap ones first, as they hold the new variables.
 void WaitingFactors::admitFresh(std::vector<FactorId>& fresh) {
-  std::vector<std::pair<std::int64_t, FactorId>> by_cost;
-  for (const FactorId f : fresh) by_cost.emplace_back(costOf(f), f);
+  std::vector<std::pair<double, FactorId>> by_cost;
+  for (const FactorId f : fresh) by_cost.emplace_back(costOf(f).flops, f);
   std::ranges::stable_sort(by_cost, {}, [](const auto& item) { return item.first; });
   puts_off_.reset(graph_.factorSlots());
   for (const auto& item : by_cost) {
     const FactorId f = item.second;
-    const std::int64_t cost = costOf(f);
-    if (cost <= allowance_ || !canWait(f)) {
+    const CliqueCost cost = costOf(f);
+    if (allows(cost) || !canWait(f)) {
       accept(f, cost);
     } else {
       puts_off_.insert(f.value);
@@ -43,24 +45,26 @@ void WaitingFactors::admitFresh(std::vector<FactorId>& fresh) {
 
 /// Admits waiting factors as far as the allowance reaches; then the first one that it does not reach comes nearer.
 void WaitingFactors::admitWaiting(std::vector<FactorId>& fresh) {
-  std::erase_if(waiting_, [&](FactorId f) {
-    const std::int64_t cost = budget_.limited() ? costOf(f) : 0;
-    if (cost > allowance_) return false;
-    accept(f, cost);
-    graph_.models().linearize(f);  // at estimates that went on meanwhile
-    fresh.push_back(f);
-    return true;
-  });
-  if (waiting_.empty()) return;
-  if (!liftVariableOf(waiting_.front())) {  // there is nothing above to lift through
-    fresh.push_back(waiting_.front());
-    graph_.models().linearize(waiting_.front());
-    waiting_.erase(waiting_.begin());
-    return;
+  std::erase_if(waiting_, [&](FactorId f) { return admit(f, budget_.limited() ? costOf(f) : CliqueCost{}, fresh); });
+  const auto isLeft = [&] {
+    return allowance_.scalars > EliminationBudget::kLeast.scalars &&
+           allowance_.flops > EliminationBudget::kLeast.flops && !budget_.isOverForEliminations();
+  };
+  for (bool lifted_any = false; !waiting_.empty() && (!lifted_any || isLeft()); lifted_any = true) {
+    const FactorId first = waiting_.front();
+    const Lift lift = liftVariableOf(first, lifted_any ? 0 : kLeastLifted);
+    if (lift == Lift::kBeyondAllowance) break;
+    if (admit(first, lift == Lift::kDone ? costOf(first) : CliqueCost{}, fresh)) waiting_.erase(waiting_.begin());
   }
-  while (allowance_ > EliminationBudget::kLeast && !budget_.timeForEliminationsIsOver() &&
-         liftVariableOf(waiting_.front())) {
-  }
+}
+
+/// Lets a factor that waited in if it does not cost too much; linearizes it at estimates that went on meanwhile.
+bool WaitingFactors::admit(FactorId id, const CliqueCost& cost, std::vector<FactorId>& fresh) {
+  if (!allows(cost)) return false;
+  accept(id, cost);
+  graph_.models().linearize(id);
+  fresh.push_back(id);
+  return true;
 }
 
 std::vector<FactorId> WaitingFactors::takeWith(std::span<const VariableId> variables) {
@@ -90,20 +94,27 @@ double WaitingFactors::chi2() const {
   return sum;
 }
 
-/// Scalars of the cliques from the factor's variables up to the root, without those that are eliminated in any case.
-std::int64_t WaitingFactors::costOf(FactorId id) {
+/// Cost of the cliques from the factor's variables up to the root, without those that are eliminated in any case.
+CliqueCost WaitingFactors::costOf(FactorId id) {
   counted_.reset(tree_.slots());
-  std::int64_t scalars = 0;
+  CliqueCost cost;
   for (const VariableId v : graph_.variablesOf(id))
     for (int c = tree_.cliqueOf(v); c >= 0 && !marked_.contains(c) && counted_.insert(c); c = tree_[c].parent)
-      scalars += tree_[c].frontal_size;
-  return scalars;
+      cost += eliminationCost(tree_[c]);
+  cost.flops *= kFillOfNewOrder;
+  return cost;
 }
 
-std::int64_t WaitingFactors::costAbove(VariableId v) {
+std::int64_t WaitingFactors::scalarsAbove(VariableId v) const {
   std::int64_t scalars = 0;
   for (int c = tree_.cliqueOf(v); c >= 0 && !marked_.contains(c); c = tree_[c].parent) scalars += tree_[c].frontal_size;
   return scalars;
+}
+
+/// Marks the cliques that a factor on the variable has eliminated anew.
+void WaitingFactors::mark(VariableId v) {
+  for (int c = tree_.cliqueOf(v); c >= 0 && marked_.insert(c); c = tree_[c].parent) {
+  }
 }
 
 /// True for a factor with a residual whose new variables, if it has any, are held by others.
@@ -113,32 +124,42 @@ bool WaitingFactors::canWait(FactorId id) const {
          });
 }
 
-void WaitingFactors::accept(FactorId id, std::int64_t cost) {
+void WaitingFactors::accept(FactorId id, const CliqueCost& cost) {
   const int rows = graph_.models().factor(id).rows();
-  allowance_ -= cost;
-  if (cost > EliminationBudget::kLeast) budget_.spend(cost);
+  allowance_.scalars -= cost.scalars;
+  allowance_.flops -= cost.flops;
+  budget_.plan({cost.scalars > EliminationBudget::kLeast.scalars ? cost.scalars : 0, cost.flops});
   for (const VariableId v : graph_.variablesOf(id)) {
     if (isNew(v) && rows >= graph_.sizeOf(v)) held_.insert(v.value);
-    for (int c = tree_.cliqueOf(v); c >= 0 && marked_.insert(c); c = tree_[c].parent) {
-    }
+    mark(v);
   }
 }
 
-/// Lifts the variable that is farthest from the root, at least to the next clique, however large: that is progress.
-bool WaitingFactors::liftVariableOf(FactorId id) {
+/// Lifts the variable that is farthest from the root, through `least` cliques however large they are: that is progress.
+/// The first clique that is eliminated anew in any case is the goal: there the factor costs nothing.
+WaitingFactors::Lift WaitingFactors::liftVariableOf(FactorId id, std::size_t least) {
   const auto variables = graph_.variablesOf(id);
-  const VariableId v = *std::ranges::max_element(variables, {}, [&](VariableId u) { return costAbove(u); });
+  const VariableId v = *std::ranges::max_element(variables, {}, [&](VariableId u) { return scalarsAbove(u); });
   std::vector<int> cliques;
-  std::int64_t scalars = 0;
-  for (int c = tree_.cliqueOf(v); c >= 0 && !marked_.contains(c); c = tree_[c].parent) {
-    if (cliques.size() >= 2 && scalars + tree_[c].frontal_size > std::min(allowance_, kLiftedAtOnce)) break;
+  CliqueCost cost;
+  bool ends = true;
+  for (int c = tree_.cliqueOf(v); c >= 0; c = tree_[c].parent) {
+    const bool at_goal = marked_.contains(c);
+    CliqueCost with = cost;
+    with += liftCost(tree_[c], graph_.sizeOf(v));
+    if (at_goal) with.scalars = cost.scalars;
+    ends = !allows(with) || (cliques.size() >= kLeastLifted && with.scalars > kLiftedAtOnce);
+    if (ends && cliques.size() >= least) break;
     cliques.push_back(c);
-    scalars += tree_[c].frontal_size;
+    cost = with;
+    if (at_goal) break;
   }
-  if (cliques.size() < 2 || !eliminator_.lift(v, cliques)) return false;
-  budget_.spend(scalars);
-  allowance_ -= scalars;
-  return true;
+  if (ends && cliques.size() < kLeastLifted && least < kLeastLifted) return Lift::kBeyondAllowance;
+  if (cliques.size() < kLeastLifted || !eliminator_.lift(v, cliques)) return Lift::kNone;
+  budget_.spend(cost);
+  allowance_.scalars -= cost.scalars;
+  allowance_.flops -= cost.flops;
+  return Lift::kDone;
 }
 
 }  // namespace motorcade

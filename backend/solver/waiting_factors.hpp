@@ -19,8 +19,9 @@ class WaitingFactors {
       : graph_(graph), tree_(tree), eliminator_(eliminator), budget_(budget) {}
 
   /// Leaves those new factors in `fresh` that the next elimination takes in, and adds the ones that waited long enough.
-  /// The cliques of the `touched` variables are eliminated anew in any case.
-  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched);
+  /// The cliques of the `touched` variables are eliminated anew in any case. With `corrections_first`, factors that
+  /// wait come no nearer.
+  void admit(std::vector<FactorId>& fresh, std::span<const VariableId> touched, bool corrections_first);
   /// Takes the waiting factors with one of the variables, which are to leave.
   std::vector<FactorId> takeWith(std::span<const VariableId> variables);
   /// Removes a factor; false when it does not wait.
@@ -34,21 +35,27 @@ class WaitingFactors {
   double chi2() const;
 
  private:
+  bool allows(const CliqueCost& cost) const {
+    return cost.scalars <= allowance_.scalars && cost.flops <= allowance_.flops;
+  }
+  void mark(VariableId v);
   bool isNew(VariableId v) const { return tree_.cliqueOf(v) < 0; }
-  std::int64_t costOf(FactorId id);
-  std::int64_t costAbove(VariableId v);
+  CliqueCost costOf(FactorId id);
+  std::int64_t scalarsAbove(VariableId v) const;
   bool canWait(FactorId id) const;
   void admitFresh(std::vector<FactorId>& fresh);
   void admitWaiting(std::vector<FactorId>& fresh);
-  void accept(FactorId id, std::int64_t cost);
-  bool liftVariableOf(FactorId id);
+  bool admit(FactorId id, const CliqueCost& cost, std::vector<FactorId>& fresh);
+  void accept(FactorId id, const CliqueCost& cost);
+  enum class Lift : char { kDone, kBeyondAllowance, kNone };  // the last: there is nothing above to lift through
+  Lift liftVariableOf(FactorId id, std::size_t least);
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
   Eliminator& eliminator_;
   EliminationBudget& budget_;
   std::vector<FactorId> waiting_;  // in the order they came
-  std::int64_t allowance_ = 0;     // scalars, of the update at hand
+  CliqueCost allowance_;           // of the update at hand
   MarkSet marked_, counted_;       // cliques that are eliminated anew; scratch
   MarkSet held_;                   // new variables that a factor holds in all dimensions
   MarkSet puts_off_;               // factors

@@ -43,6 +43,13 @@ void printClosures(const GraphFigures& figures) {
               figures.run.cpu_ms.size() - closures.first_update, closures.worst_excess_percent);
 }
 
+void printSettling(const GraphRun& run) {
+  const Quantiles ms = quantilesOf(run.settling->cpu_ms);
+  std::printf("  %-28s %zu further updates, max %.3f ms; chi2 %.7g, %.4f %% above the optimum\n",
+              "until nothing waits:", run.settling->cpu_ms.size(), ms.max, run.settling->chi2,
+              excessPercent(run.settling->chi2, run.optimum));
+}
+
 template <class Item, class Value>
 double worst(const std::vector<Item>& items, Value Item::*value) {
   double worst = 0;
@@ -144,6 +151,7 @@ void printGraph(const GraphFigures& figures) {
       run.reached_from_odometry ? "" : "  (optimum not reached from odometry)");
   printTimes("covariance of two far poses:", quantilesOf(run.far_covariances_ms));
   if (run.problems > 0) std::printf("  %zu problems reported\n", run.problems);
+  if (run.settling) printSettling(run);
   if (figures.closures) printClosures(figures);
   if (figures.check) printCheck(*figures.check);
   std::fflush(stdout);
@@ -165,6 +173,10 @@ Json jsonOf(const GraphFigures& figures) {
                {"reached_from_odometry", run.reached_from_odometry},
                {"far_covariances_ms", jsonOf(quantilesOf(run.far_covariances_ms))},
                {"held_bytes", run.held_bytes}};
+  if (run.settling)
+    json["settling"] = {{"updates", run.settling->cpu_ms.size()},
+                        {"cpu_ms", jsonOf(quantilesOf(run.settling->cpu_ms))},
+                        {"chi2", run.settling->chi2}};
   if (figures.closures) json["closures"] = closuresJson(figures);
   if (figures.check) json["check"] = jsonOf(*figures.check);
   return json;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::ptrdiff_t kClosureFrames = 50;
 constexpr double kSettledPercent = 0.1;
+constexpr std::size_t kMostSettling = 20'000;
 constexpr std::uint64_t kSeed = 1;  // of the pairs whose covariance is asked for
 
 void findOptimum(const PoseGraph& graph, PoseGraphFeed& solved, GraphRun& run) {
@@ -22,6 +23,17 @@ void findOptimum(const PoseGraph& graph, PoseGraphFeed& solved, GraphRun& run) {
   const double from_odometry = at_once.chi2();
   run.reached_from_odometry = excessPercent(from_odometry, run.optimum) < 0.001;
   run.optimum = std::min(run.optimum, from_odometry);
+}
+
+GraphRun::Settling settle(PoseGraphFeed& feed) {
+  GraphRun::Settling settling;
+  for (bool settled = false; !settled && settling.cpu_ms.size() < kMostSettling;) {
+    const auto update = feed.settle();
+    settling.cpu_ms.push_back(update.cpu_ms);
+    settled = update.report.settled();
+  }
+  settling.chi2 = feed.chi2();
+  return settling;
 }
 
 }  // namespace
@@ -40,6 +52,7 @@ GraphRun runGraph(const PoseGraph& graph, const IncrementalSolver::Params& param
   run.edges = feed.edgeCount();
   run.chi2 = feed.chi2();
   run.held_bytes = feed.solver().heldBytes();
+  if (params.budget.isLimited()) run.settling = settle(feed);
   run.far_covariances_ms = farCovariances_ms(feed, graph, kSeed);
   findOptimum(graph, feed, run);
   return run;

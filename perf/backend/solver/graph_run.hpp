@@ -13,8 +13,15 @@ struct GraphRun {
   std::size_t poses = 0, edges = 0, problems = 0;                       // in the solution; that updates reported
   std::vector<double> cpu_ms, eliminated_scalars, substituted_scalars;  // per update
   std::vector<double> far_covariances_ms;                               // after the last update
-  double chi2 = 0;
+  double chi2 = 0;                                                      // after the last update
   std::size_t held_bytes = 0;
+
+  /// With a budget: further updates, each within its own, until nothing waits, and chi2 then.
+  struct Settling {
+    std::vector<double> cpu_ms;
+    double chi2 = 0;
+  };
+  std::optional<Settling> settling;
 
   /// The lowest chi2 that Gauss-Newton reaches from the incremental solution and, all at once, from odometry.
   double optimum = 0;

@@ -40,6 +40,8 @@ void addSolverOptions(CLI::App& app, IncrementalSolver::Params& params) {
   add("--iterated-scalars", params.iterated_scalars,
       "Substituted in an update, up to which it may take a further step; 0: no limit");
   add("--budget", params.budget.scalars, "Scalars eliminated per update beyond what new factors ask for; 0: no limit");
+  add("--budget-flops", params.budget.flops,
+      "Counted work of an update beyond that, half of it for eliminations; 0: no limit");
   add("--budget-ms", params.budget.ms, "Time of an update beyond that, half of it for eliminations; 0: no limit");
 }
 
@@ -57,6 +59,7 @@ nlohmann::ordered_json jsonOf(const IncrementalSolver::Params& params) {
           {"iterations_per_update", params.iterations_per_update},
           {"iterated_scalars", params.iterated_scalars},
           {"budget_scalars", params.budget.scalars},
+          {"budget_flops", params.budget.flops},
           {"budget_ms", params.budget.ms}};
 }
 

@@ -94,6 +94,21 @@ TEST_F(Solve, EveryPolicyAndTheBatchSolutionAgree) {
   EXPECT_NEAR(solved(edges, "--policy every --every 1")["chi2"], batch, 0.05 * batch);
 }
 
+TEST_F(Solve, ABudgetOfTimeOrScalarsEndsAtTheSameSolution) {
+  std::string edges;
+  for (int i = 0; i < 300; ++i) edges += ahead(i, i + 1);
+  edges += "EDGE_SE3:QUAT 0 300 299 0 0 0 0 0 1" + kUnit6 + ahead(300, 301);
+  const double without = solved(edges)["chi2"];
+  for (const char* const options : {"--budget-ms 0.01", "--budget 1", "--budget 1 --budget-ms 5"}) {
+    const json result = solved(edges, options);
+    EXPECT_NEAR(result["chi2"], without, 0.02 * without) << options;
+    EXPECT_GE(result["settling_updates"], 1) << options;
+    EXPECT_GT(result["settling_max_ms"], 0) << options;
+    EXPECT_THAT(printed(), HasSubstr("further updates")) << options;
+  }
+  EXPECT_FALSE(solved(edges).contains("settling_updates"));
+}
+
 TEST_F(Solve, AMeasurementThatIsNoNumberIsLeftOutAndNamed) {
   const json result =
       solved(quarterTurn(0, 1) + quarterTurn(1, 2) + "EDGE_SE2 0 2 nan 0 0" + kUnit3 + quarterTurn(2, 3));

@@ -58,6 +58,40 @@ TEST(Eliminator, APartInTheMiddleCanBeTakenOutAndHungBack) {
   });
 }
 
+TEST(Eliminator, ALiftedVariableIsEliminatedLaterFromTheSameInformation) {
+  int lifted = 0;
+  forRandomTrees([&](EliminatedGraph& scene) {
+    for (int i = 0; i < 4; ++i) {
+      const VariableId v = scene.variables[scene.world.below(scene.variables.size())];
+      auto path = scene.pathFrom(scene.tree.cliqueOf(v));
+      path.resize(1 + scene.world.below(path.size()));
+      const int top = path.back();
+      if (!scene.eliminator.lift(v, path)) continue;
+      ++lifted;
+      EXPECT_EQ(scene.tree.cliqueOf(v), top);
+      EXPECT_EQ(scene.tree[top].frontalVariables().back(), v);
+      scene.expectSound();
+      scene.expectEqual();
+    }
+  });
+  EXPECT_GT(lifted, 100);
+}
+
+/// What cliques pass on after a lift is right, too: the top that gathers it comes out the same.
+TEST(Eliminator, TheCliquesAboveCanBeEliminatedAfterALift) {
+  forRandomTrees([](EliminatedGraph& scene) {
+    for (int i = 0; i < 3; ++i) {
+      const VariableId v = scene.variables[scene.world.below(scene.variables.size())];
+      auto path = scene.pathFrom(scene.tree.cliqueOf(v));
+      path.resize(1 + scene.world.below(path.size()));
+      scene.eliminator.lift(v, path);
+    }
+    const auto all = scene.cliques();
+    const auto path = scene.pathFrom(all[scene.world.below(all.size())]);
+    for (const int c : path) scene.eliminator.refresh(c);
+  });
+}
+
 TEST(Eliminator, RefreshingAPathTakesUpNewLinearModels) {
   forRandomTrees([](EliminatedGraph& scene) {
     for (const VariableId v : scene.variables) {

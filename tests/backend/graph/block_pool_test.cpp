@@ -43,6 +43,23 @@ TEST(BlockPool, BlocksThatAreOutNeverOverlap) {
   for (std::size_t i = 1; i < out.size(); ++i) EXPECT_LE(out[i - 1].data + out[i - 1].doubles, out[i].data);
 }
 
+TEST(BlockPool, ABlockThatGrowsLittleByLittleSeldomMoves) {
+  BlockPool pool;
+  constexpr std::size_t kFirst = 1000, kLast = 100'000, kStep = 100;
+  double* block = pool.takeToGrow(kFirst);
+  int moves = 0;
+  for (std::size_t doubles = kFirst; doubles <= kLast; doubles += kStep) {
+    if (!BlockPool::fits(block, doubles)) {
+      pool.give(block);
+      block = pool.takeToGrow(doubles);
+      ++moves;
+    }
+    std::fill_n(block, doubles, 1.0);  // the address sanitizer watches the chunks' ends
+  }
+  EXPECT_LE(moves, 40) << "an eighth more each time";
+  EXPECT_LE(pool.usedBytes(), (kLast + kLast / 8 + 16) * sizeof(double));
+}
+
 TEST(BlockPool, GivesTheSameMemoryOutAgain) {
   BlockPool pool;
   test::Noise noise(2);
