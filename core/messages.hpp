@@ -97,7 +97,7 @@ struct Box {
   double left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
 };
 
-/// The part of the left image that shows what is fixed to the camera, as the own vehicle's bonnet.
+/// The part of the left image that shows what is fixed to the camera, as the own vehicle's hood.
 struct OwnVehicleView {
   double share = 0;  // of the image
   Box box;

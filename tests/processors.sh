@@ -28,7 +28,7 @@ name=here follow "$motorcade"
 best=$(instructions "$motorcade")
 if [[ $best != AVX* ]]; then
   echo "skipped, as this processor has no AVX2"
-  exit 0
+  exit 77
 fi
 for lesser in AVX2 SSE4 SSE2; do
   [[ $lesser != "$best" ]] || continue

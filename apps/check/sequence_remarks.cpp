@@ -47,7 +47,7 @@ bool isOutside(const Middle& middle) {
 bool isFar(double share) { return share < 0.3 || share > 0.7; }
 
 /// True when the calibration seems to be of larger or smaller images, which moves both shares alike. Images with a side
-/// cut off, or two in one, move the horizontal share; nobody cuts off so much there. Sky or bonnet cut off moves the
+/// cut off, or two in one, move the horizontal share; nobody cuts off so much there. Sky or hood cut off moves the
 /// vertical share alone, which is fine.
 bool isOfAnotherSize(const Middle& middle) {
   constexpr double kAlike = 0.12;
@@ -109,7 +109,7 @@ std::vector<std::string> odditiesOf(const StereoCamera& camera) {
   if (!isOutside(middle) && !isOfAnotherSize(middle) && (middle.down < kLeastShare || middle.down > kMostShare))
     oddities.push_back(
         fmt::format("the calibration's principal point lies in row {:.5g} of images {} px high: right where much "
-                    "of the sky or the bonnet is cut off, and cy was lessened by what is cut off above",
+                    "of the sky or the hood is cut off, and cy was lessened by what is cut off above",
                     camera.cy_px, camera.height_px));
   const double unlike = std::max(camera.fx_px, camera.fy_px) / std::min(camera.fx_px, camera.fy_px);
   if (unlike > kMostUnlike)

@@ -96,7 +96,7 @@ void addWhatComesBeside(CLI::App& command, RunOptions& options) {
   typed(command, "SIDE=PIXELS|MASK.png", "--ignore", options.ignored,
         "Pixels of the left image, rectified, that are of no use: so many rows or columns at a side, as "
         "bottom=70 (top, left, right), or an image that is not black there; may come several times. What is "
-        "fixed to the camera, as a bonnet, is found without it");
+        "fixed to the camera, as a hood, is found without it");
 }
 
 }  // namespace

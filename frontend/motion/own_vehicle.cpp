@@ -18,7 +18,7 @@ constexpr double kCompany_m = 0.5;  // points of the own vehicle have others as 
 constexpr int kCompany = 3;         // ... so many, at least
 
 constexpr double kMove_px = 10;  // of a point at rest: twenty times the tolerance of one that stays
-/// Each coordinate may change by this beyond the noise: camera and bonnet shake against each other.
+/// Each coordinate may change by this beyond the noise: camera and hood shake against each other.
 constexpr double kTolerance_px = 0.5;
 constexpr double kMaxChi2 = 16.3;  // 3 degrees of freedom: 99.9 %
 /// Way of the camera between two votes, so that their views differ: ten of them take a meter.

@@ -16,9 +16,9 @@
 
 namespace motorcade {
 
-/// Finds what is fixed to the camera, as the own vehicle's bonnet: near points that stay in place in both images while
+/// Finds what is fixed to the camera, as the own vehicle's hood: near points that stay in place in both images while
 /// a point at rest would have moved far. Each is left out as soon as it shows. Where such points were seen often, the
-/// image is masked from there to its border, as reflections move on a bonnet. Call `learn` in frame order.
+/// image is masked from there to its border, as reflections move on a hood. Call `learn` in frame order.
 class OwnVehicle {
  public:
   explicit OwnVehicle(const StereoCamera& camera);

@@ -97,7 +97,7 @@ std::vector<OwnVehicleMap::Cell> OwnVehicleMap::takeConnected(Cells& sure, Cell 
   return part;
 }
 
-/// Border at which a part of the own vehicle enters the image; empty where it reaches none. A bonnet reaches the sides,
+/// Border at which a part of the own vehicle enters the image; empty where it reaches none. A hood reaches the sides,
 /// too.
 std::optional<OwnVehicleMap::Border> OwnVehicleMap::borderOf(const std::vector<Cell>& part) const {
   const auto reaches = [&](const auto& distance) {

@@ -6,8 +6,8 @@
 namespace motorcade {
 namespace {
 
-// Sensors that contradict the camera from the start are left out after three frames, and are heard again after some
-// twenty in which they agreed.
+// Sensors that contradict the camera from the start are left out after three frames. They are heard again after 8 to 19
+// frames in which they agreed.
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
 /// Samples are late by less: a larger distance from their frame shows that a clock was set.
