@@ -45,7 +45,8 @@ TEST(VehicleResult, HasThePoseOfTheVehicleInItsOwnWorld) {
 
 TEST(VehicleResult, SeesObjectsFromTheVehicle) {
   const Result vehicle = seenFromVehicle(ofCamera(), roof());
-  const Result::Object &before = ofCamera().objects[0], &object = vehicle.objects[0];
+  const Result camera = ofCamera();
+  const Result::Object &before = camera.objects[0], &object = vehicle.objects[0];
   EXPECT_THAT(transformOf(object.T_cam_body), IsNearPose(roof() * transformOf(before.T_cam_body), kRounding));
   EXPECT_THAT(transformOf(vehicle.T_world_cam) * transformOf(object.T_cam_body),
               IsNearPose(transformOf(object.T_world_body), kRounding))

@@ -54,8 +54,8 @@ class Torus {
   };
 
   static SE3 truth(int k) {
-    const double along = 2 * M_PI * (k % kTorusColumns) / kTorusColumns,
-                 around = 2 * M_PI * (k / kTorusColumns) / kTorusRows;
+    const int column = k % kTorusColumns, row = k / kTorusColumns;
+    const double along = 2 * M_PI * column / kTorusColumns, around = 2 * M_PI * row / kTorusRows;
     const SE3 outwards(Eigen::Matrix3d::Identity(), {8, 0, 0}), to_surface(Eigen::Matrix3d::Identity(), {4, 0, 0});
     const Eigen::Vector3d in_place = Eigen::Vector3d::Zero();
     return SE3(expSO3({0, 0, along}), in_place) * outwards * SE3(expSO3({0, around, 0}), in_place) * to_surface;
