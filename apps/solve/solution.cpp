@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/thread_placement.hpp"
 
@@ -83,8 +84,10 @@ void addPartProblems(const PoseGraphFeed& feed, std::vector<SolveProblem>& probl
     const auto& of_first = gauge.parts()[gauge.partOf(feed.index().at(part.front()))];
     const std::string what = of_first.size == 1 ? "; left where it is"
                                                 : "; solved by itself, with " + namesOf(idsOf(of_first.held)) + " held";
-    problems.push_back({"disconnected_part", namesOf(part),
-                        "disconnected part: no edge joins it to the rest, which is held by " + main + what, part});
+    std::string sentence = "disconnected part: no edge joins it to the rest, which is held by ";
+    sentence += main;
+    sentence += what;
+    problems.push_back({"disconnected_part", namesOf(part), std::move(sentence), part});
   }
 }
 
