@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/thread_placement.hpp"
+#include "io/files/number_ranges.hpp"
 
 namespace motorcade {
 namespace {
@@ -15,15 +16,7 @@ constexpr double kConverged = 1e-6;            // m and rad: further steps would
 
 /// "pose 7", "poses 7-9, 12"
 std::string namesOf(const std::vector<std::int64_t>& ids) {
-  std::string text = ids.size() == 1 ? "pose" : "poses";
-  for (std::size_t i = 0; i < ids.size();) {
-    std::size_t last = i;
-    while (last + 1 < ids.size() && ids[last + 1] == ids[last] + 1) ++last;
-    text.append(i == 0 ? " " : ", ").append(std::to_string(ids[i]));
-    if (last > i) text.append("-").append(std::to_string(ids[last]));
-    i = last + 1;
-  }
-  return text;
+  return (ids.size() == 1 ? "pose " : "poses ") + rangesOf(ids);
 }
 
 /// Adds the factors that the solver had to leave out, each once. A later edge may mend a fault of the system.

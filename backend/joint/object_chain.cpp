@@ -8,7 +8,6 @@
 namespace motorcade {
 namespace {
 
-constexpr int kLinkingPoints = 1;    // of an object in a frame, by which its pose follows from those before and after
 constexpr double kFreeMotion = 1e6;  // times the accelerations' variance: nothing is known of how objects move
 
 }  // namespace
@@ -33,7 +32,7 @@ void ObjectChain::begin(ObjectTrack& track, ObjectRecord& record) {
 void ObjectChain::hold(ObjectTrack& track) {
   auto held = track.records.rbegin();
   for (auto earlier = std::next(held); earlier != track.records.rend(); held = earlier++)
-    if (earlier->second.measured == 0) break;
+    if (earlier->second.measured == 0 || !earlier->second.pose.valid()) break;
   solver_.addFactor(priorFactor(
       held->second.pose, held->second.seen.T_cam_body,
       poseSigmas(params_.object_origin_sigma_m, params_.object_axes_sigma_rad, params_.object_axes_sigma_rad)));

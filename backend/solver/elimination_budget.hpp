@@ -26,7 +26,8 @@ class EliminationBudget {
 
   explicit EliminationBudget(const Params& params) : params_(params) {}
 
-  /// Where estimates lag, or the update before ended in substitution, less of the work is for eliminations.
+  /// Begins an update. Less of its work is for eliminations if estimates lag, or if the one before ended in
+  /// substitution.
   void beginUpdate(bool estimates_lag = false);
   /// Removes all limits for the rest of the update.
   void lift();

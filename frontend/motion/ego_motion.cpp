@@ -230,7 +230,8 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
   const bool by_chance = ego.inlier_count < kByChance * static_cast<double>(observations.size());
   const bool is_steady = surprise(fit->T_cam_ref, predicted) < kSteadierThan;
-  if (by_chance && !is_steady && predicted.steady_frames >= kTrustedSteadyFrames) return std::nullopt;
+  const bool is_known = predicted.steady_frames >= kTrustedSteadyFrames && !predicted.by_vehicle;
+  if (by_chance && is_known && !is_steady) return std::nullopt;
   return ego;
 }
 

@@ -21,11 +21,11 @@ void dropNew(TrackedObject& object) {
   });
 }
 
-/// True when a body that was predicted with the `prior` may have been there.
-bool mayBe(const SE3& T_cam_body, const PosePrior& prior) {
+/// True when a body may have been there, where its kinematics predict it.
+bool mayBe(const SE3& T_world_body, const ObjectKinematics& predicted) {
   constexpr double kChi2 = 11.3;  // 99 % of 3 degrees of freedom
-  const Eigen::Vector3d off_m = (prior.mean.inverse() * T_cam_body).translation();
-  const Eigen::Matrix3d covariance = inverse(prior.information).topLeftCorner<3, 3>();
+  const Eigen::Vector3d off_m = (predicted.pose().inverse() * T_world_body).translation();
+  const Eigen::Matrix3d covariance = predicted.poseCovariance().topLeftCorner<3, 3>();
   return off_m.dot(covariance.inverse() * off_m) < kChi2;
 }
 
@@ -70,7 +70,7 @@ std::optional<ObjectObservation> LookBack::observe(const PastScene& earlier, con
   const auto is_own = [&](const PointMeasurement& p) { return followed.find(p.point) != nullptr; };
   const auto believed = [&](const ObjectMotionEstimator::Found& found) {
     return std::ranges::any_of(found.observation.measured, is_own) ||
-           (!object.born_slow && mayBe(found.fit.T_cam_ref, prior));
+           (!object.born_slow && mayBe(earlier.T_world_cam * found.fit.T_cam_ref, then));
   };
   std::optional<ObjectObservation> observation;
   auto found = motion_.lookBack(object, *earlier.scene, later, prior);

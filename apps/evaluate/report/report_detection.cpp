@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate/report/report.hpp"
+#include "io/files/number_ranges.hpp"
 
 namespace motorcade {
 namespace {
@@ -28,22 +27,9 @@ void printDetectionLine(std::string& text, const char* kind, const DetectionErro
         errors.false_rows_in_ignored, errors.id_switches, errors.mota);
 }
 
-/// Runs of successive frames, as "3-7, 9".
-std::string rangesOf(const std::vector<std::int64_t>& frames) {
-  std::string text;
-  for (auto first = frames.begin(); first != frames.end();) {
-    const auto broken = std::adjacent_find(first, frames.end(), [](auto a, auto b) { return b > a + 1; });
-    const auto last = broken == frames.end() ? std::prev(frames.end()) : broken;
-    print(text, "{}{}", text.empty() ? "" : ", ", *first);
-    if (*last > *first) print(text, "-{}", *last);
-    first = std::next(last);
-  }
-  return text;
-}
-
 /// A line for each id, of at most 100 columns.
 void printFrames(std::string& text, const char* what, const char* of, const FramesById& by_id) {
-  constexpr std::size_t kColumns = 60;
+  constexpr std::size_t kColumns = 48;  // of the frames
   constexpr int kMostLines = 8;
   int lines = 0;
   for (const auto& [id, frames] : by_id) {

@@ -16,7 +16,7 @@ struct GraphRun {
   double chi2 = 0;                                                      // after the last update
   std::size_t held_bytes = 0;
 
-  /// With a budget: further updates, each within its own, until nothing waits, and chi2 then.
+  /// Further updates with a budget, each within its own, until nothing waits, and chi2 then.
   struct Settling {
     std::vector<double> cpu_ms;
     double chi2 = 0;

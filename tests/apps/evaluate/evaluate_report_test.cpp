@@ -49,6 +49,16 @@ TEST_F(EvaluateDrive, FramesOfFalseRowsAndMissedLabelsAreNamed) {
   EXPECT_EQ(json["missed_within_30m_in"], R"({"7": [0, 1, 2, 3, 4, 7]})"_json);
 }
 
+TEST_F(EvaluateDrive, ManyFramesFitIntoALine) {
+  writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
+    if (i % 2 == 0) estimate.objects[0].T_world_body = SE3(Eigen::Matrix3d::Identity(), {-30, 1, 60});
+  });
+  const std::string table = tableOf(evaluateRun(options_));
+  const std::size_t begin = table.find("  missed to 30 m"), end = table.find('\n', begin);
+  EXPECT_LE(end - begin, 100U);
+  EXPECT_THAT(table.substr(begin, end - begin), testing::EndsWith(", ..."));
+}
+
 TEST_F(EvaluateDrive, TheTableFitsAHundredColumnsAndExplainsItsMeasures) {
   writeRun("run", 0, kFrames, [](int i, FrameEstimate& estimate) {
     estimate.T_world_cam = SE3(Eigen::Matrix3d::Identity(), {100.0 * (i % 2), 0, 0}) * estimate.T_world_cam;

@@ -77,7 +77,7 @@ TEST(Eliminator, ALiftedVariableIsEliminatedLaterFromTheSameInformation) {
   EXPECT_GT(lifted, 100);
 }
 
-/// What cliques pass on after a lift is right, too: the top that gathers it comes out the same.
+/// The cliques above gather what a lifted path passes on, and come out the same.
 TEST(Eliminator, TheCliquesAboveCanBeEliminatedAfterALift) {
   forRandomTrees([](EliminatedGraph& scene) {
     for (int i = 0; i < 3; ++i) {

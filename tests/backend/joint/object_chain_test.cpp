@@ -27,8 +27,7 @@ class Chain {
  public:
   explicit Chain(bool use_smoothness = true) : chain_(params_, use_smoothness, solver_, frames_) {}
 
-  /// Where it was `seen` counts in the first frame and before the gauge, which the first frame is unless `hold` is
-  /// false.
+  /// Adds a frame. `seen` counts until there is a gauge, which the first frame is unless `hold` is false.
   ObjectRecord& extend(const SE3& seen = firstSeen(), bool hold = true) {
     const std::int64_t frame = std::ssize(frames_);
     const SE3 T_world_cam = frame == 0 ? SE3{} : (solver_.pose(frames_.at({frame - 1}).x) * kCameraStep).normalized();
@@ -39,7 +38,7 @@ class Chain {
     record.seen.frame = {frame};
     record.stamp.ns = static_cast<std::int64_t>(1e9 * kStep_s) * frame;
     record.seen.T_cam_body = seen;
-    if (frame == 0) {
+    if (frame == 0 || !track_.records.at({frame - 1}).pose.valid()) {
       record.seen.velocity_cam_mps = kVelocity_mps;
       chain_.begin(track_, record);
     } else {
@@ -88,7 +87,7 @@ TEST(ObjectChain, BeginsWhereAndAsFastAsItWasSeen) {
   EXPECT_LT((chain.chain().travelAxes(chain.track()) - Eigen::Matrix3d::Identity()).norm(), 1e-3);
 }
 
-/// What is found by looking back may be another thing. The object stays where it was when it was spawned.
+/// The object stays where it was spawned, as looking back may find another thing.
 TEST(ObjectChain, StaysWhereItWasSpawnedWhateverIsFoundBefore) {
   Chain chain;
   const SE3 elsewhere = SE3(Eigen::Matrix3d::Identity(), {0, 0, -8}) * firstSeen();
@@ -108,6 +107,17 @@ TEST(ObjectChain, StaysWhereItsOwnPointsWereFoundFirst) {
   chain.extend();
   for (int i = 0; i < 5; ++i) chain.solver().update();
   EXPECT_THAT(chain.solver().pose(first.pose), test::IsNearPose(found, 1e-3));
+}
+
+/// A track whose variables were dropped begins anew, and its earlier poses are no part of the graph any more.
+TEST(ObjectChain, TakesNoDroppedPoseForItsGauge) {
+  Chain chain;
+  ObjectRecord& dropped = chain.extend();
+  dropped.measured = 4;
+  dropped.pose = dropped.twist = {};
+  const SE3 seen = SE3(Eigen::Matrix3d::Identity(), {0, 0, 2}) * firstSeen();
+  const ObjectRecord& anew = chain.extend(seen);
+  EXPECT_THAT(chain.solver().pose(anew.pose), test::IsNearPose(seen, 1e-3));
 }
 
 TEST(ObjectChain, GoesOnInTheWorldWithTheTwistOfTheFrameBefore) {

@@ -160,7 +160,7 @@ TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
   EXPECT_LT((of_any->T_seen_now.translation() - sliding.translation()).norm(), 0.05);
 }
 
-/// Where vehicles fill the view, some of their points agree with a motion that is none.
+/// Some points of vehicles that fill the view agree with a motion that is none.
 TEST(EgoMotion, AMotionOnWhichFewAgreeMustBeSteady) {
   const EgoMotionEstimator estimate({}, kRig);
   const auto believed = [&](int agreeing, double change_m) {
