@@ -24,8 +24,12 @@ inline Eigen::Matrix3d travelAxes(const Eigen::Vector3d& velocity, const Eigen::
 /// A box that a vehicle's points fit into.
 struct VehicleSize {
   double length_m, width_m, height_m;
-  bool holds(const Eigen::AlignedBox3d& box, double slack_m) const {
+  /// `slack_m` of length, width and height.
+  bool holds(const Eigen::AlignedBox3d& box, const Eigen::Array3d& slack_m) const {
     return (box.sizes().array() < Eigen::Array3d(length_m, width_m, height_m) + slack_m).all();
+  }
+  bool holds(const Eigen::AlignedBox3d& box, double slack_m) const {
+    return holds(box, Eigen::Array3d::Constant(slack_m));
   }
 };
 

@@ -31,10 +31,19 @@ bool isWithin(const TrackedObject& one, const SE3& T_other_one, const TrackedObj
 /// sees it, lie on its flank if they move alike and in its track. A car that follows is hidden, or a gap shows between
 /// the two. A nearer object may be a car before the lorry.
 bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const TrackedObject& younger,
-             const Eigen::AlignedBox3d& other, double slack_m) {
+             const Eigen::AlignedBox3d& other, const Eigen::Array3d& slack_m) {
   constexpr double kHigherThanAVan_m = 2.3;
   if (own.sizes().z() < kHigherThanAVan_m || !kLongestVehicle.holds(own.merged(other), slack_m)) return false;
   return (younger.T_cam_body * younger.middle()).norm() > (older.T_cam_body * own.center()).norm();
+}
+
+/// Two standard deviations of the place of one relative to the other, along the axes of the older. Of what is far ahead
+/// the distance is uncertain and the lane is not: cars abreast stay two.
+Eigen::Array3d slackBetween_m(const TrackedObject& older, const TrackedObject& younger, const SE3& T_older_younger) {
+  const Eigen::Matrix3d R = T_older_younger.rotation();
+  const Eigen::Matrix3d covariance = older.kinematics.poseCovariance().topLeftCorner<3, 3>() +
+                                     R * younger.kinematics.poseCovariance().topLeftCorner<3, 3>() * R.transpose();
+  return (kSigmas * covariance.diagonal().array().sqrt()).min(kMaxSlack_m);
 }
 
 bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through,
@@ -47,11 +56,10 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
   const double sigma_mps = hypotenuse(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
   if (difference_mps >= kMaxSpeedDifference_mps + kSigmas * sigma_mps) return false;
   const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
-  const double slack_m = std::min(
-      kMaxSlack_m, kSigmas * hypotenuse(older.kinematics.positionSigma_m(), younger.kinematics.positionSigma_m()));
+  const Eigen::Array3d slack_m = slackBetween_m(older, younger, T_older_younger);
   // Not where the younger is tall: a car before a lorry would end in it.
   if (mayBeWalking(older, camera) && mayBeWalking(younger, camera))
-    return kPerson.holds(own.merged(other), std::min(kMaxSlackOfPerson_m, slack_m));
+    return kPerson.holds(own.merged(other), slack_m.min(kMaxSlackOfPerson_m));
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
   if (difference_mps >= kMaxSpeedDifference_mps) return false;

@@ -114,6 +114,24 @@ TEST(DuplicateObjects, WhatMovesAlikeBehindTheFrontOfALorryIsItsFlank) {
   EXPECT_FALSE(areOne(lorry, {.track = 2, .begin_m = 21, .end_m = 23, .speed_mps = 11}));
 }
 
+TEST(DuplicateObjects, AnUncertainDistanceMakesOneOfTwoInALineNotOfTwoAbreast) {
+  const auto areOneAfar = [](const Seen& older, const Seen& younger) {
+    std::vector<TrackedObject> objects{objectOn(older), objectOn(younger)};
+    for (TrackedObject& object : objects) {
+      Eigen::Matrix<double, 12, 1> sigma = Eigen::Matrix<double, 12, 1>::Constant(0.01);
+      sigma[0] = 0.8;  // along the travel
+      object.kinematics =
+          ObjectKinematics(object.kinematics.pose(), object.kinematics.twist(), sigma.cwiseAbs2().asDiagonal());
+    }
+    mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
+    return objects[1].life.phase() == Phase::kEnded;
+  };
+  const Seen older{1, 40, 43};
+  EXPECT_FALSE(areOne(older, {2, 44, 47}));
+  EXPECT_TRUE(areOneAfar(older, {2, 44, 47}));
+  EXPECT_FALSE(areOneAfar(older, {.track = 2, .begin_m = 41, .end_m = 44, .left_m = 2.5}));
+}
+
 TEST(DuplicateObjects, VehiclesSideBySideOrOfAnotherSpeedAreTwo) {
   EXPECT_FALSE(areOne({1, 10, 12}, {.track = 2, .begin_m = 10, .end_m = 12, .left_m = 3}));
   EXPECT_FALSE(areOne({1, 10, 12}, {.track = 2, .begin_m = 13, .end_m = 15, .speed_mps = 11}));

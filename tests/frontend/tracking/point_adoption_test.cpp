@@ -121,6 +121,17 @@ TEST(PointAdoption, WhatLiesApartJoinsOnlyFromTheSegmentThatWasMatched) {
   EXPECT_FALSE(wide.takes(true));  // no vehicle is so wide
 }
 
+TEST(PointAdoption, AnUncertainDepthJoinsWhatIsAheadNotWhatIsInTheNextLane) {
+  const auto takesUncertain = [](const Eigen::Vector3d& p_body, double sigma_px) {
+    CarWithPoints car;
+    car.see(p_body).sigma_px.z() = sigma_px;
+    return car.takes();
+  };
+  EXPECT_FALSE(takesUncertain({3, 0, 0}, 0.05));
+  EXPECT_TRUE(takesUncertain({3, 0, 0}, 2));
+  EXPECT_FALSE(takesUncertain({0, 2, 0}, 2));
+}
+
 TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
   CarWithPoints car;
   double reached_m = 1;
