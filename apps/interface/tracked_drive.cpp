@@ -27,6 +27,7 @@ void TrackedDrive::start(std::int64_t first_id) {
 
 Tracker::Push TrackedDrive::push(StereoFrame frame) {
   const std::int64_t stamp_ns = frame.head.stamp.ns;
+  frame.head.frame = numbers_.read(frame.head.frame);
   frame.inputs.vehicle_samples = vehicle_motion_->count();
   if (frame.inputs.vehicle_samples > 0) frame.inputs.vehicle_motion = vehicle_motion_;
   const Admission admission = pipeline_.push(std::move(frame));
@@ -93,6 +94,7 @@ void TrackedDrive::deliverOne(const PipelineResult& result) {
     if (news) tell(around_.log, level, [&] { return *news; });
   };
   told(LogLevel::kInfo, sample_bits_.news());
+  told(LogLevel::kWarning, numbers_.news());
   told(LogLevel::kInfo, own_vehicle_news_.observe(*result.measurements));
   told(LogLevel::kWarning, vehicle_motion_news_.observe(*result.measurements));
   Result converted = convert_(result);

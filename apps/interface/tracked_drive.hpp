@@ -9,6 +9,7 @@
 #include "apps/interface/camera_model.hpp"
 #include "apps/interface/final_taker.hpp"
 #include "apps/interface/pair_input.hpp"
+#include "apps/interface/pair_numbers.hpp"
 #include "apps/interface/pair_watch.hpp"
 #include "apps/interface/result_conversion.hpp"
 #include "apps/interface/result_queue.hpp"
@@ -65,6 +66,7 @@ class TrackedDrive {
   Surroundings around_;
   std::shared_ptr<VehicleMotionLog> vehicle_motion_ = std::make_shared<VehicleMotionLog>();
   SampleBits sample_bits_;
+  PairNumbers numbers_;
   StampDoubts stamp_doubts_;  // the pushing thread's
   std::atomic<bool> closed_{false}, failed_{false}, abandoned_{false};
   ResultConversion convert_;  // the delivering thread's, as the news and the watch

@@ -64,6 +64,14 @@ void requireAgreement(const PipelineParams& settings, const Tracker::Options& op
     throw Error("options.settings", "say another pipeline.policy than options.policy; leave it out, or set the other");
 }
 
+/// Throws where results of a replay would depend on the machine, as `run` does.
+void requireReproducible(const PipelineConfig& config) {
+  if (config.backend.window.budget_ms > 0 && config.pipeline.policy != InputPolicy::kLive)
+    throw Error("options.settings",
+                "say backend.budget_ms: a budget in milliseconds would make replay irreproducible; use "
+                "backend.budget_scalars, or the live policy");
+}
+
 }  // namespace
 
 PipelineConfig configOf(const Tracker::Options& options, const Camera& camera) {
@@ -81,6 +89,7 @@ PipelineConfig configOf(const Tracker::Options& options, const Camera& camera) {
   const auto sigmas = sigmasOf(camera);
   if (CalibrationSigmas& set = config.backend.window.calibration; sigmas && set == CalibrationSigmas{}) set = *sigmas;
   requireAgreement(config.pipeline, options);
+  requireReproducible(config);
   requirePlacement(config.pipeline.placement);
   return config;
 }

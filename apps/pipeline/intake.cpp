@@ -60,6 +60,8 @@ Admission Intake::judge(StereoFrame frame) {
   if (!frame.head.frame.valid()) frame.head.frame = next_id_;
   if (frame.head.frame < next_id_) {
     late_.fetch_add(1, std::memory_order_relaxed);
+    // A camera that starts anew sets back its clock, too: the same few frames show both.
+    if (stamped_ && frame.head.stamp <= *stamped_) static_cast<void>(clock_.read(frame.head.stamp));
     return Admission::kLate;
   }
   next_id_ = {frame.head.frame.value + 1};

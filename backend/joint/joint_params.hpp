@@ -34,7 +34,7 @@ struct JointParams {
   double offset_sigma_px = 1.0;  // prior of the disparity offset of a rig that is found to be off; 0 trusts every rig
 
   double first_pose_sigma_m = 1e-3, first_pose_sigma_rad = 1e-4;
-  /// Gauge of an object: its frame at birth.
+  /// Gauge of an object: the oldest pose of its unbroken run of measured frames, see ObjectChain::hold.
   double object_origin_sigma_m = 1e-3, object_axes_sigma_rad = 1e-4;
   /// Prior of an object's first twist: a vehicle may be fast, but hardly turns.
   double twist_sigma_mps = 20, yaw_rate_sigma_radps = 0.2, tilt_rate_sigma_radps = 0.05;

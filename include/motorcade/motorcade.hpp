@@ -140,7 +140,7 @@ struct Result {
     std::optional<Mask> mask{};                  // with `Options::masks`, where the outline was found
     std::optional<Acceleration> acceleration{};  // empty in its first frame, and where the back-end cannot tell
   };
-  std::int64_t frame = -1, stamp_ns = 0;  // of the pair; where the clock was set back, stamps go on all the same
+  std::int64_t frame = -1, stamp_ns = 0;  // of the pair; they go on where its numbers or clock were set back
   Status status = Status::kGood;
   Cause cause = Cause::kNone;
   int segment = 0;  // increases by one where no measurement links the poses before and after
@@ -198,7 +198,7 @@ class MOTORCADE_API Tracker {
   ~Tracker();
   /// Rejects a pair without pixels, a pair or labels of another size than the camera's, a pair after `close`, and one
   /// beside another thread's push. Rejects a stamp less than half a millisecond after the last one, as stamps in
-  /// another unit are. A clock that was set back is followed after four pairs.
+  /// another unit are. A clock or numbers that were set back are followed after four pairs.
   Push push(const Pair& pair) noexcept;
   /// Predicts the camera where images fail. Any thread may call it, at its own rate, late and out of order; a pair
   /// knows the samples before it. An accepted sample is stored; if it contradicts the images it is left out, and only

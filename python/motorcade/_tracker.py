@@ -106,8 +106,8 @@ class Tracker:
         change from pair to pair, and be wrong.
 
         A pair or labels of another size than the camera's, a pair without pixels (None), not after the one before (a
-        clock that was set back is followed after four pairs), after ``close``, or beside another thread's push is
-        rejected, and the answer says why. Raises TypeError or ValueError for an array that is no image.
+        clock or numbers that were set back are followed after four pairs), after ``close``, or beside another thread's
+        push is rejected, and the answer says why. Raises TypeError or ValueError for an array that is no image.
         """
         return self._native.push((left, right, instances), stamp_ns, frame, format)
 

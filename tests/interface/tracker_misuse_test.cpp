@@ -147,6 +147,8 @@ TEST(TrackerMisuse, EachBadOptionIsNamed) {
       {"options.settings", [](Tracker::Options& o) { o.settings = "this is no line"; }},
       {"options.settings", [](Tracker::Options& o) { o.settings = "pipeline.threads = 7"; }},  // beside options.threads
       {"options.settings", [](Tracker::Options& o) { o.settings = "pipeline.policy = \"live\""; }},
+      {"options.settings",
+       [](Tracker::Options& o) { o.settings = "backend.budget_ms = 5"; }},  // no replay of it repeats
   };
   for (std::size_t i = 0; i < misuses.size(); ++i) {
     Tracker::Options options = replay();
@@ -156,6 +158,7 @@ TEST(TrackerMisuse, EachBadOptionIsNamed) {
   Tracker::Options agreeing = replay(2);
   agreeing.settings = "pipeline.threads = 2\npipeline.policy = \"replay\"\npipeline.frames_in_flight = 2";
   EXPECT_EQ(faultOf(blankDrive(0).camera, agreeing), "");
+  EXPECT_EQ(faultOf(blankDrive(0).camera, {.settings = "backend.budget_ms = 5"}), "");  // the default is live
 }
 
 TEST(TrackerMisuse, ALogThatThrowsCostsNoResult) {

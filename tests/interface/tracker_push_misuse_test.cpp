@@ -128,6 +128,51 @@ TEST_F(BadPairs, StampsAndNumbersThatDoNotRiseAreRejected) {
   expectResultsOfGoodPairs();
 }
 
+/// A camera that starts anew counts from 0 again, its clock perhaps as well.
+class CameraThatStartsAnew : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(WithItsClockAndWithout, CameraThatStartsAnew, testing::Bool());
+
+TEST_P(CameraThatStartsAnew, IsFollowedAfterFourPairs) {
+  constexpr std::size_t kPairs = 16, kNew = 6, kRefused = 4;
+  const DriveInMemory drive = blankDrive(kPairs);
+  std::mutex mutex;
+  std::vector<std::string> said;
+  Tracker::Options options = replay();
+  options.log = [&](Tracker::LogLevel, const std::string& text) {
+    const std::lock_guard lock(mutex);
+    said.push_back(text);
+  };
+  Tracker tracker(drive.camera, options);
+  for (std::size_t i = 0; i < kPairs; ++i) {
+    Pair pair = drive.pair(i);
+    pair.frame = static_cast<std::int64_t>(i < kNew ? i : i - kNew);
+    if (GetParam() && i >= kNew) pair.stamp_ns = drive.frames[i - kNew].stamp_ns;
+    const bool rejected = i >= kNew && i < kNew + kRefused;
+    EXPECT_EQ(tracker.push(pair).status == Tracker::Push::Status::kRejected, rejected) << i;
+  }
+  tracker.close();
+  const std::vector<Result> results = rest(tracker);
+  ASSERT_EQ(results.size(), kPairs - kRefused);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].frame, static_cast<std::int64_t>(i));
+    EXPECT_EQ(results[i].stamp_ns, drive.frames[i < kNew ? i : i + kRefused].stamp_ns);
+  }
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(
+      std::ranges::count_if(
+          said, [](const std::string& text) { return text.find("numbers of the pairs were set back") != text.npos; }),
+      1);
+}
+
+TEST_F(BadPairs, NumbersThatStayBehindOutOfOrderAreNeverAccepted) {
+  pushGood();
+  pushGood();
+  for (const std::int64_t value : {5, 4, 3, 2, 1, 1, 1, 1})
+    expectRejected("number", [value](Pair& p) { p.frame = value; });
+  pushGood();
+  expectResultsOfGoodPairs();
+}
+
 TEST_F(BadPairs, APushAfterCloseIsRejected) {
   pushGood();
   tracker_.close();
