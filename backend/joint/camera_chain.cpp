@@ -13,8 +13,8 @@ constexpr double kMaxPrediction_s = 1.0;
 
 }  // namespace
 
-bool showsPoints(const FrameMeasurements& measurements) {
-  return measurements.head.status == FrameStatus::kGood || measurements.head.cause == FrameCause::kUnlinked;
+bool showsPoints(const FrameHead& head) {
+  return head.status == FrameStatus::kGood || head.cause == FrameCause::kUnlinked;
 }
 
 CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
@@ -30,7 +30,7 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
     camera.weak = m.head.status != FrameStatus::kGood || seen_again < kFewStatic;
     link(m, camera);
   }
-  if (!showsPoints(m)) return camera;
+  if (!showsPoints(m.head)) return camera;
   last_seen_ = {m.head.frame, SE3{}};
   unseen_.clear();
   return camera;
@@ -54,8 +54,8 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
     return;
   }
   const auto seen = frames_.find(last_seen_.frame);
-  if (!showsPoints(m) || seen == frames_.end()) {
-    const Matrix6d covariance = showsPoints(m) ? unknownMotionCovariance() : m.odometry.covariance;
+  if (!showsPoints(m.head) || seen == frames_.end()) {
+    const Matrix6d covariance = showsPoints(m.head) ? unknownMotionCovariance() : m.odometry.covariance;
     if (told) return;
     const auto factor = addOdometry(m.odometry.T_previous_now, covariance, before.x, camera.x);
     if (seen == frames_.end())
@@ -80,7 +80,7 @@ void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& cam
         addOdometry(m.odometry.T_previous_now, m.odometry.covariance, before.x, camera.x);
     start_.steps.push_back({link, before.x, camera.x, before.head.stamp, m.head.stamp});
   }
-  if (!showsPoints(m)) return;
+  if (!showsPoints(m.head)) return;
   if (start_.gauge) solver_.removeFactor(*start_.gauge);
   addGaugePrior(camera.x, solver_.pose(camera.x));
 }

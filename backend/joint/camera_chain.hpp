@@ -9,8 +9,8 @@
 
 namespace motorcade {
 
-/// True when points were seen, whether or not they tell how the camera moved.
-bool showsPoints(const FrameMeasurements& measurements);
+/// True for a frame in which points were seen, whether or not they tell how the camera moved.
+bool showsPoints(const FrameHead& head);
 
 /// Camera poses as variables, and what links them where landmarks hardly do: the front-end's odometry, the vehicle's
 /// own motion, or a steady motion over frames without points. Where nobody knows how the camera moved, a new part

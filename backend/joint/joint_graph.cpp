@@ -83,8 +83,8 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   const bool alone = tracks_.empty() && measurements.objects.empty();
   dropTroubled(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
-  if (showsPoints(measurements)) undecided_.observe(measurements.head.frame, measurements.undecided);
-  if (showsPoints(measurements)) calibrate(measurements.head.frame);
+  if (showsPoints(measurements.head)) undecided_.observe(measurements.head.frame, measurements.undecided);
+  if (showsPoints(measurements.head)) calibrate(measurements.head.frame);
   if (considers_calibration_) consider(measurements);
   ++frame_count_;
 }
@@ -92,7 +92,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
 /// Adds the camera. A point that rests from its second view on did so in the first; one that rests only later did not.
 void JointGraph::addCamera(const FrameMeasurements& m) {
   BodyPoints& at_rest = at_rest_.bundles().points();
-  if (showsPoints(m))
+  if (showsPoints(m.head))
     at_rest.observe(m.head.frame, m.at_rest, [&](PointId point) { return undecided_.take(point, m.head.frame, 1); });
   frames_.emplace(m.head.frame, cameras_.add(m, at_rest_.seenAgain()));
   for (const ObjectObservation& seen : m.objects) at_rest.forget(seen.measured);
@@ -106,7 +106,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
     if (!track.has_gauge && track.records.rbegin()->second.pose.valid()) objects_.hold(track);
     LandmarkBundles& landmarks = landmarksOf(id);
     const bool seen_now = track.records.rbegin()->first == measurements.head.frame;
-    if (!seen_now && showsPoints(measurements))
+    if (!seen_now && showsPoints(measurements.head))
       landmarks.points().observe(measurements.head.frame, {});  // its tracks end
     objects_.renewMotion(track, measurements.head.frame);
     landmarks.renew(frame_count_, posesOf(track));
@@ -135,6 +135,7 @@ void JointGraph::addObservation(const ObjectObservation& seen) {
     return;  // nothing to predict from
   else
     objects_.begin(track, record);
+  if (!showsPoints(frames_.at(seen.frame).head)) return;
   landmarks.points().observe(seen.frame, seen.measured,
                              [&](PointId point) { return undecided_.take(point, seen.frame, kEarlierViews); });
 }
@@ -150,7 +151,7 @@ void JointGraph::consider(const FrameMeasurements& measurements) {
   };
   const auto newest = frames_.rbegin();
   if (frames_.size() > 1) set(std::next(newest)->first, newest->first, response_.ofNewestStep());
-  if (!showsPoints(measurements)) return;
+  if (!showsPoints(measurements.head)) return;
   response_.observe(newest->first, measurements.at_rest);
   if (!respondsIn(frame_count_)) return;
   const auto pose = [this](VariableId camera) { return solver_.pose(camera); };
