@@ -103,6 +103,33 @@ bool lieWithinAnother(const std::vector<PlacedPoint>& points, const OtherBodies&
                            [&](const Eigen::Vector3d& p_cam) { return others.around(p_cam, kMargin_m) != nullptr; });
 }
 
+/// True when what rests around the object's points in the image is nearer than these. A body hides what is behind it; a
+/// mirror image lies behind the surface that mirrors it.
+bool liesBehindRest(const std::vector<PlacedPoint>& points, const ObjectView& view, const StereoCamera& camera) {
+  constexpr double kLeastDepth_m = 1;  // a body's own depth does not count
+  constexpr double kSigmas = 3;        // standard deviations of a disparity
+  constexpr int kLeast = 5;            // points at rest
+  if (points.empty()) return false;
+  Eigen::AlignedBox2d around_px;
+  std::vector<double> depths_m;
+  for (const PlacedPoint& point : points) {
+    around_px.extend(point.measured->uvd_px.head<2>().cast<double>());
+    depths_m.push_back(point.p_cam.z());
+  }
+  const auto middle = depths_m.begin() + std::ssize(depths_m) / 2;
+  std::ranges::nth_element(depths_m, middle);
+  if (*middle <= kLeastDepth_m) return false;
+  const Eigen::Vector2d reach_px = Eigen::Vector2d::Constant(camera.fx_px * kReach_m / *middle);
+  around_px = {around_px.min() - reach_px, around_px.max() + reach_px};
+  const double before_px = camera.fx_px * camera.baseline_m / (*middle - kLeastDepth_m);
+  int nearer = 0, all = 0;
+  for (const ScenePoint& p : view.scene) {
+    if (p.label != PointLabel::kStatic || !p.flow || !around_px.contains(p.uvd_px.head<2>())) continue;
+    ++all, nearer += p.uvd_px.z() > before_px + kSigmas * p.sigma_px.z();
+  }
+  return nearer >= kLeast && nearer >= kNearlyAll * all;
+}
+
 /// Points around which the image moved with the body, and around which it rested.
 struct Votes {
   int moved = 0, rested = 0;
@@ -144,9 +171,10 @@ MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDispar
   if (lieOnRoad(points, view.ground)) return MotionVerdict::kOnRoad;
   if (lieWithinAnother(points, others)) return MotionVerdict::kWithin;
   if (view.small && points.empty() && observed->patches.empty()) return MotionVerdict::kUntold;
-  if (!disparities) return verdictOf({}, well_apart);
   const bool few = view.small && std::ssize(points) < kEnough;
   if (few) std::ranges::move(placed(observed->patches, view, camera), std::back_inserter(points));
+  if (liesBehindRest(points, view, camera)) return MotionVerdict::kBehind;
+  if (!disparities) return verdictOf({}, well_apart);
   const Votes votes = votesOf(points, *disparities, view, others, camera);
   if (votes.rested > 0 && view.well_before->apart < view.width) return MotionVerdict::kUntold;
   const bool told = !few || kTold * std::ssize(points) <= votes.moved + votes.rested;

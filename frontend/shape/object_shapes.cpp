@@ -207,7 +207,8 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   ObjectView view{.T_cam_body = T_cam_body,
                   .box = estimateBox(shape.evidence, shape.speed_mps),
                   .ground = scene.ground,
-                  .disparity_offset_px = scene.disparity_offset_px};
+                  .disparity_offset_px = scene.disparity_offset_px,
+                  .scene = scene.points};
   if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && observed && observed->born_slow && !view.points)
     view.points = extentOf(observed->patches, camera_, T_cam_body.inverse(), scene.disparity_offset_px);

@@ -28,6 +28,7 @@ struct ObjectView {
   int level = 1;       // of the pyramid, at which its surroundings are looked at
   GroundPlane ground;
   double disparity_offset_px = 0;
+  std::span<const ScenePoint> scene{};  // the frame's points
   struct Other {
     SE3 T_body_cam;
     Eigen::Vector3d least, most;

@@ -110,8 +110,8 @@ TEST(Existence, IsSettledByWhatIsSettledAlone) {
 }
 
 TEST(Existence, GrowsWithWhatMovesAndFallsWithWhatRestsOrIsNotThere) {
-  for (const MotionVerdict against :
-       {MotionVerdict::kRested, MotionVerdict::kOnRoad, MotionVerdict::kWithin, MotionVerdict::kNothing}) {
+  for (const MotionVerdict against : {MotionVerdict::kRested, MotionVerdict::kOnRoad, MotionVerdict::kWithin,
+                                      MotionVerdict::kBehind, MotionVerdict::kNothing}) {
     Existence existence;
     existence.addSpeed(6, 1);
     addVerdicts(existence, 0, 5, MotionVerdict::kMoved);

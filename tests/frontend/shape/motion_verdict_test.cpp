@@ -1,7 +1,9 @@
 #include "frontend/shape/motion_verdict.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +49,16 @@ class Surface {
   void addOther(double nearer_m = 0) { view_.others.push_back(along(nearer_m, -kAside_m)); }
   /// Adds a lost object, which goes another way or along with the body.
   void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
+  /// Adds so many points at rest between those of the surface, so much nearer than it.
+  void addRest(int points, double nearer_m) {
+    for (int i = 0; i < points; ++i)
+      rest_.push_back({.point = {static_cast<std::int64_t>(rest_.size())},
+                       .uvd_px = {590.0 + 5 * i, 150.0, kRig.fx_px * kRig.baseline_m / (kDepth_m - nearer_m)},
+                       .sigma_px = Eigen::Vector3d::Constant(0.2),
+                       .label = PointLabel::kStatic,
+                       .flow = SceneFlow{}});
+    view_.scene = rest_;
+  }
   void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
   /// Follows none of the points of what may be a person any more, but finds them as patches.
   void followByPatches() {
@@ -86,6 +98,7 @@ class Surface {
   ObjectView view_;
   LevelDisparities seen_;
   ObjectObservation observed_;
+  std::vector<ScenePoint> rest_;
   ImagePyramid now_, before_;
 };
 
@@ -188,6 +201,18 @@ TEST(MotionVerdict, TellsAShadowOnTheRoad) {
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kOnRoad);
   surface.lowerTo(kLowest_m + 0.3);
   EXPECT_EQ(surface.verdict(moved), MotionVerdict::kMoved);
+}
+
+/// The surface of a parked car mirrors somebody who walks by.
+TEST(MotionVerdict, TellsAMirrorImageByTheNearerSurfaceAroundIt) {
+  Surface few, near, mirrored, behind;
+  few.addRest(4, 3), near.addRest(8, 0.8), mirrored.addRest(8, 3), behind.addRest(8, -3);
+  EXPECT_EQ(few.verdict(moved), MotionVerdict::kMoved);
+  EXPECT_EQ(near.verdict(moved), MotionVerdict::kMoved) << "it may be the body's own depth";
+  EXPECT_EQ(mirrored.verdict(moved), MotionVerdict::kBehind);
+  EXPECT_EQ(behind.verdict(moved), MotionVerdict::kMoved);
+  mirrored.addRest(4, -3);
+  EXPECT_EQ(mirrored.verdict(moved), MotionVerdict::kMoved) << "a pole before a body leaves what is behind to be seen";
 }
 
 }  // namespace
