@@ -111,8 +111,8 @@ void addBridge(CLI::App& app, Action& action) {
   typed(command, "FILE.toml", "--config", options.config, "Parameters; see effective_config.toml of any run");
   addWhere(command, options);
   command.footer(
-      "Example: motorcade bridge DRIVE --loop\n"
-      "         motorcade bridge --images /left/image_raw,/right/image_raw");
+      "Examples: motorcade bridge DRIVE --loop\n"
+      "          motorcade bridge --images /left/image_raw,/right/image_raw");
 }
 
 }  // namespace motorcade
