@@ -6,10 +6,10 @@
 
 Tables, code blocks, headings, pictures and HTML are left out. An item of a list is a paragraph, and inline code is one word.
 """
+import os
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 
 GUIDES = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "docs/guide_*.md", "docs/bridge.md", "docs/view.md", "docs/glossary.md",
@@ -113,9 +113,15 @@ def check_documents(root):
     return failed
 
 
+def headers(root):
+    """Yields the headers of a checkout or of a source package, without what was built."""
+    for folder, inside, names in os.walk(root):
+        inside[:] = sorted(name for name in inside if name != "build" and not name.startswith("."))
+        yield from (pathlib.Path(folder) / name for name in sorted(names) if name.endswith((".hpp", ".h")))
+
+
 def check_doc_comments(root):
-    listed = subprocess.run(["git", "ls-files", "*.hpp", "*.h"], cwd=root, capture_output=True, text=True, check=True).stdout.split()
-    words = [word for name in listed if (root / name).is_file() for word in first_words((root / name).read_text(encoding="utf-8"))]
+    words = [word for header in headers(root) for word in first_words(header.read_text(encoding="utf-8"))]
     share = 100 * sum(word in LATE_SUBJECTS for word in words) / max(1, len(words))
     print(f"{share:.2f} % of {len(words)} doc comments in headers begin with a preposition or conjunction (at most {MOST_LATE_SUBJECTS} %)")
     return share > MOST_LATE_SUBJECTS

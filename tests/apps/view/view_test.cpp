@@ -1,5 +1,7 @@
 #include <chrono>
+#include <future>
 #include <map>
+#include <mutex>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -76,16 +78,21 @@ TEST(Viewers, CloseEndsWaitsAfterTheLastEvent) {
 }
 
 TEST(ReplayGate, HoldsStepsAndGoesOn) {
-  ReplayGate gate([] { return false; });
+  std::promise<void> held;
+  std::once_flag once;
+  ReplayGate gate([&] {
+    std::call_once(once, [&] { held.set_value(); });  // it asks as it waits
+    return false;
+  });
   EXPECT_EQ(gate.pass({}), SteadyTime::duration{}) << "open";
   gate.step();
   gate.pass({});
   EXPECT_TRUE(gate.paused()) << "after the one pair";
-  std::jthread resume([&gate] {
-    std::this_thread::sleep_for(50ms);
+  std::jthread resume([&] {
+    held.get_future().wait();
     gate.resume();
   });
-  EXPECT_GE(gate.pass({}), 40ms) << "how long it was held";
+  EXPECT_GE(gate.pass({}), 200ms) << "how long it was held";
 }
 
 TEST(ReplayGate, AStopAndALeftPageEndTheWait) {
