@@ -193,7 +193,7 @@ bool MotionSegmenter::isLikeAVehicle(const MotionComponent& component, const std
 std::vector<Parameter> parametersOf(MotionSegmenter::Params& params) {
   return {numberParameter("max_flow_chi2", params.max_flow_chi2, {1, 100},
                           "lower cuts objects apart at smaller differences of their scene flow"),
-          numberParameter("max_gap_m", params.max_gap_m, {0.5, 10},
+          numberParameter("max_gap_m", params.max_gap_m, {0.2, 10},
                           "lower parts neighboring vehicles, higher joins sparse ones"),
           numberParameter("min_points", params.min_points, {2, 10},
                           "fewer find smaller and farther objects, more find fewer false ones"),

@@ -22,16 +22,17 @@ constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from t
 constexpr double kMostSlack_m = kLongestVehicle.length_m;
 
 /// True when a candidate is close to the points known so far: a long vehicle is found step by step. Points of a
-/// component that was matched to the object need no neighbors within the size of an ordinary vehicle. The candidate's
-/// noise counts along each axis of the body: its distance says little of points far ahead, its lane much.
+/// component that was matched to the object need no neighbors within the size of an ordinary vehicle. Far ahead a
+/// candidate's noise lets the body be longer, not wider: it counts along each axis of the body.
 bool isWithinReach(const Eigen::AlignedBox3d& known, const BodyPoint& candidate, bool matched) {
   const Eigen::Array3d slack_m = kDepthNoiseSigmas * candidate.covariance.diagonal().array().sqrt();
-  if (slack_m.matrix().norm() > kMostSlack_m) return false;
+  const double reach_m = slack_m.matrix().norm();
+  if (reach_m > kMostSlack_m) return false;
   const Eigen::AlignedBox3d grown = Eigen::AlignedBox3d(known).extend(candidate.p_body);
   Eigen::AlignedBox3d near = known;
-  near.min().array() -= kMargin_m + slack_m;
-  near.max().array() += kMargin_m + slack_m;
-  const bool close = near.contains(candidate.p_body);
+  near.min().array() -= kMargin_m;
+  near.max().array() += kMargin_m;
+  const bool close = near.exteriorDistance(candidate.p_body) < reach_m;
   return (close && kLongestVehicle.holds(grown, slack_m)) || (matched && kOrdinaryVehicle.holds(grown, slack_m));
 }
 

@@ -124,12 +124,13 @@ TEST(PointAdoption, WhatLiesApartJoinsOnlyFromTheSegmentThatWasMatched) {
 TEST(PointAdoption, AnUncertainDepthJoinsWhatIsAheadNotWhatIsInTheNextLane) {
   const auto takesUncertain = [](const Eigen::Vector3d& p_body, double sigma_px) {
     CarWithPoints car;
+    car.object.points.push_back({{2000}, {0, -1.6, 0}, 1e-4 * Eigen::Matrix3d::Identity()});  // on its other side
     car.see(p_body).sigma_px.z() = sigma_px;
     return car.takes();
   };
   EXPECT_FALSE(takesUncertain({3, 0, 0}, 0.05));
   EXPECT_TRUE(takesUncertain({3, 0, 0}, 2));
-  EXPECT_FALSE(takesUncertain({0, 2, 0}, 2));
+  EXPECT_FALSE(takesUncertain({0, 1.9, 0}, 2));
 }
 
 TEST(PointAdoption, ALongVehicleIsFoundStepByStepUpToTheLengthOfALorry) {
