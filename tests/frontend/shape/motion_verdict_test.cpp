@@ -51,12 +51,14 @@ class Surface {
   void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
   /// Adds so many points at rest between those of the surface, so much nearer than it.
   void addRest(int points, double nearer_m) {
+    const SceneFlow none{
+        .p_cam = Eigen::Vector3d::Zero(), .velocity_mps = Eigen::Vector3d::Zero(), .covariance = Matrix6d::Identity()};
     for (int i = 0; i < points; ++i)
       rest_.push_back({.point = {static_cast<std::int64_t>(rest_.size())},
                        .uvd_px = {590.0 + 5 * i, 150.0, kRig.fx_px * kRig.baseline_m / (kDepth_m - nearer_m)},
                        .sigma_px = Eigen::Vector3d::Constant(0.2),
                        .label = PointLabel::kStatic,
-                       .flow = SceneFlow{}});
+                       .flow = none});
     view_.scene = rest_;
   }
   void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
