@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "backend/joint/merge_by_point.hpp"
@@ -73,6 +74,16 @@ bool BodyPoints::isKept(FrameId frame) const {
 void BodyPoints::end(Candidate& candidate) {
   if (candidate.track.views.size() >= 2) ended_.push_back(std::move(candidate.track));
   candidate.track.views.clear();
+}
+
+void BodyPoints::endFrom(FrameId oldest) {
+  for (Candidate& candidate : candidates_) {
+    auto& views = candidate.track.views;
+    if (views.front().frame > oldest) continue;
+    LandmarkTrack ended{candidate.track.point, {views.begin(), std::prev(views.end())}, candidate.track.estimate};
+    views.erase(views.begin(), std::prev(views.end()));
+    if (candidate.chosen && ended.views.size() >= 2) ended_.push_back(std::move(ended));
+  }
 }
 
 void BodyPoints::forget(std::span<const PointMeasurement> points) {

@@ -61,6 +61,8 @@ class BodyPoints {
   /// Forgets tracks that have not ended, of points that belong to another body.
   void forget(std::span<const PointMeasurement> points);
 
+  /// Ends the tracks with views in frames up to this one. The newest view begins a track of its own.
+  void endFrom(FrameId oldest);
   /// Takes the tracks that ended since the last call, with two views and more.
   std::vector<LandmarkTrack> takeEnded();
   /// The chosen landmarks whose tracks go on, with two views and more.

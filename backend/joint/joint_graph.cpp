@@ -202,8 +202,9 @@ void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }
 void JointGraph::retiring(FrameId oldest) {
   cameras_.forgetStart();
   shake_.forget(oldest);
-  at_rest_.bundles().retire(oldest);
-  for (auto& [id, landmarks] : landmarks_) landmarks.retire(oldest);
+  bool changed = at_rest_.retire(oldest, frames_);
+  for (const auto& [id, track] : tracks_) changed |= landmarksOf(id).retire(oldest, posesOf(track));
+  if (changed) dropTroubled(solver_.update());
 }
 
 std::string JointGraph::nameOf(VariableId v) const {

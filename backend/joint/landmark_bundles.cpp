@@ -33,14 +33,20 @@ void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_v
   newest_.reset();
   std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
   if (frame_count % params_.closing_frames == 0) closeEnded(pose_variable);
-  std::vector<LandmarkTrack*> tracks = points_.current();
-  std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
+  const std::vector<LandmarkTrack*> tracks = newestTracks();
   if (tracks.empty()) return;
   const Gathered gathered = gather(tracks, pose_variable);
   newest_ = addBundle(gathered, params_.newest);
   if (!newest_) return;
   neighbors_per_view_ = neighborsPerView(camera_, gathered.landmarks);
   shake_.observe(newest_->frames, newest_->shakes);
+}
+
+/// The tracks that go on, and those that ended since the last lasting factor.
+std::vector<LandmarkTrack*> LandmarkBundles::newestTracks() {
+  std::vector<LandmarkTrack*> tracks = points_.current();
+  std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
+  return tracks;
 }
 
 /// Makes lasting factors of the tracks that ended.
@@ -110,11 +116,19 @@ void LandmarkBundles::relinearize(const PoseVariable& pose_variable) {
   }
 }
 
-void LandmarkBundles::retire(FrameId oldest) {
+bool LandmarkBundles::retire(FrameId oldest, const PoseVariable& pose_variable) {
+  const bool leaves = newest_ && newest_->frames.front() <= oldest;
+  if (leaves) {
+    solver_.removeFactor(newest_->factor);
+    points_.endFrom(oldest);
+    std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
+    closeEnded(pose_variable);
+    newest_.reset();
+    if (const auto tracks = newestTracks(); !tracks.empty())
+      newest_ = addBundle(gather(tracks, pose_variable), params_.newest);
+  }
   std::erase_if(closed_, [oldest](const Closed& closed) { return closed.first <= oldest; });
-  if (!newest_ || newest_->frames.front() > oldest) return;
-  solver_.removeFactor(newest_->factor);
-  newest_.reset();
+  return leaves;
 }
 
 void LandmarkBundles::drop() {

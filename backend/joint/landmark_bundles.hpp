@@ -38,9 +38,9 @@ class LandmarkBundles {
   void relinearize(const PoseVariable& pose_variable);
   /// Fixes the factors over ended tracks.
   void fix() { closed_.clear(); }
-  /// Prepares for frames up to this one to leave the graph. Lasting factors keep what they say of them; the factor over
-  /// the tracks that go on is made anew without them.
-  void retire(FrameId oldest);
+  /// Prepares for frames up to this one to leave the graph: their tracks end, as lasting factors keep what is said of
+  /// the frames that stay. True when there were such tracks: update the solver before the frames leave.
+  bool retire(FrameId oldest, const PoseVariable& pose_variable);
   /// Forgets the body's poses, which have gone, and the factors with them.
   void drop();
 
@@ -62,6 +62,7 @@ class LandmarkBundles {
     LandmarkViews landmarks;
     std::vector<LandmarkTrack*> tracks;
   };
+  std::vector<LandmarkTrack*> newestTracks();
   void closeEnded(const PoseVariable& pose_variable);
   Gathered gather(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable) const;
   std::optional<Bundle> addBundle(const Gathered& gathered, IncrementalSolver::Lifetime lifetime);

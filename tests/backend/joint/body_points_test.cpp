@@ -46,6 +46,21 @@ TEST(BodyPoints, CutsATrackThatOutlivesTheWindow) {
   EXPECT_EQ(ended[1].views.front().frame, FrameId{5});
 }
 
+TEST(BodyPoints, EndsTracksFromAFrameThatLeaves) {
+  BodyPoints points(kParams);
+  for (int frame = 0; frame < 3; ++frame) points.observe({frame}, std::vector{point(7)});
+  for (int frame = 3; frame < 5; ++frame) points.observe({frame}, std::vector{point(7), point(8, 300)});
+  points.endFrom({0});
+  const auto ended = points.takeEnded();
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_EQ(ended[0].point, PointId{7});
+  EXPECT_EQ(ended[0].views.size(), 4U) << "the newest begins another track";
+  points.observe({5}, std::vector{point(7), point(8, 300)});
+  std::set<std::pair<std::int64_t, std::size_t>> views;
+  for (const LandmarkTrack* track : points.current()) views.insert({track->point.value, track->views.size()});
+  EXPECT_EQ(views, (std::set<std::pair<std::int64_t, std::size_t>>{{7, 2}, {8, 3}}));
+}
+
 /// A cut leaves views in few frames, the same for all points, however long they are followed.
 TEST(BodyPoints, ACutLeavesATrackSparseEarlierViews) {
   constexpr int kFrames = 200, kOldest = 64, kMostViews = 14;

@@ -127,51 +127,6 @@ TEST(JointBackend, WithoutPointsTheCameraFollowsTheOdometry) {
   EXPECT_LT(cameraError_m(finals, drive.truth()), 1.0);
 }
 
-/// Error of the objects' motion over five frames without images, RMS over seeds [m]. Afterwards their points are seen
-/// again, or `renewed` by others.
-double errorOverDarkFrames_m(bool renewed) {
-  constexpr int kLastBefore = 20, kFirstAfter = 26;
-  PointDrive::Options lasting = kStreet;
-  lasting.life_frames = 1000;
-  double sum = 0;
-  int count = 0;
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    PointDrive drive(seed, lasting);
-    JointBackend backend(JointParams{}, kPointRig);
-    std::vector<FrameEstimate> finals;
-    for (int i = 0; i < drive.options().frames; ++i) {
-      FrameMeasurements m = *drive.measure(i);
-      const bool dark = i > kLastBefore && i < kFirstAfter;
-      if (dark) m.head.status = FrameStatus::kLost, m.at_rest.clear();
-      for (ObjectObservation& seen : m.objects) {
-        if (dark) seen.state = ObjectState::kPredicted, seen.measured.clear();
-        if (renewed && i >= kFirstAfter)
-          for (PointMeasurement& p : seen.measured) p.point.value += 1'000'000'000;
-      }
-      std::ranges::move(backend(std::make_shared<const FrameMeasurements>(m))->finals, std::back_inserter(finals));
-    }
-    std::ranges::move(backend.finish(), std::back_inserter(finals));
-    for (const ObjectEstimate& before : finals[kLastBefore].objects) {
-      const auto after = std::ranges::find(finals[kFirstAfter].objects, before.track, &ObjectEstimate::track);
-      if (after == finals[kFirstAfter].objects.end()) continue;
-      const auto vehicle = static_cast<std::size_t>(before.track.value - 100);
-      const SE3 truth =
-          drive.truth().object(vehicle, kLastBefore).inverse() * drive.truth().object(vehicle, kFirstAfter);
-      const SE3 motion = before.T_world_body.inverse() * after->T_world_body;
-      sum += (truth.translation() - motion.translation()).squaredNorm();
-      ++count;
-    }
-  }
-  EXPECT_GT(count, 0);
-  return std::sqrt(sum / count);
-}
-
-TEST(JointBackend, LandmarksOfObjectsLastOverFramesWithoutImages) {
-  const double kept_m = errorOverDarkFrames_m(false), renewed_m = errorOverDarkFrames_m(true);
-  std::cout << kept_m << " m, with other points afterwards " << renewed_m << " m\n";
-  EXPECT_LT(kept_m, 0.7 * renewed_m);
-}
-
 /// Error of the camera's published motion from frame to frame, RMS over seeds [m].
 double onlineCameraStepError_m(const JointParams& params) {
   double sum = 0;
@@ -313,6 +268,29 @@ TEST(JointBackend, FinalsOfAShortWindowAreThoseOfABatchSolution) {
     EXPECT_LT((step.translation() - best_step.translation()).norm(), 0.002) << i;
   }
   EXPECT_NEAR(test::objectError_m(finals, once.truth()), test::objectError_m(best, again.truth()), 0.02);
+}
+
+/// Points are followed for three times as long as the window lasts.
+TEST(JointBackend, AWindowShorterThanItsTracksLosesLittle) {
+  const auto run = [](int window_frames) {
+    PointDrive drive(4, kStreet);
+    JointBackend backend(JointParams{}, kPointRig, {.window_frames = window_frames});
+    std::vector<FrameEstimate> finals;
+    for (int i = 0; i < drive.options().frames; ++i) {
+      const auto estimates = backend(drive.measure(i));
+      EXPECT_TRUE(estimates->problems.empty()) << "frame " << i << ": " << estimates->problems.front();
+      finals.insert(finals.end(), estimates->finals.begin(), estimates->finals.end());
+    }
+    const auto rest = backend.finish();
+    finals.insert(finals.end(), rest.begin(), rest.end());
+    return std::pair(cameraError_m(finals, drive.truth()), test::stepError_m(finals, drive.truth()));
+  };
+  const auto [camera_m, step_m] = run(5);
+  const auto [best_camera_m, best_step_m] = run(0);
+  std::cout << "camera " << camera_m << " instead of " << best_camera_m << " m, steps of objects " << step_m
+            << " instead of " << best_step_m << " m\n";
+  EXPECT_LT(camera_m, 1.5 * best_camera_m);
+  EXPECT_LT(step_m, 2.5 * best_step_m);
 }
 
 /// Objects that nobody tells of any more, neither that they are seen nor that they ended.

@@ -72,7 +72,7 @@ class FollowedBody {
   }
   void retireOldest() {
     const auto [frame, pose] = *poses_.begin();
-    bundles_.retire(frame);
+    if (bundles_.retire(frame, poseVariable())) solver_.update();
     solver_.retire(std::vector{pose});
     poses_.erase(frame);
   }
