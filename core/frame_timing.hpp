@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "core/messages.hpp"
@@ -21,16 +22,17 @@ enum class Stage {
   kObjectShapes
 };
 inline constexpr std::size_t kStageCount = static_cast<std::size_t>(Stage::kObjectShapes) + 1;
-inline constexpr auto kStageNames =
-    std::to_array<std::string_view>({"prepare", "stereo matching", "optical flow", "scene flow segmentation",
-                                     "tracking", "incremental optimization", "object shapes"});
 /// The stages' names as single words, for columns and keys of files.
 inline constexpr auto kStageKeys =
     std::to_array<std::string_view>({"prepare", "stereo_matching", "optical_flow", "scene_flow_segmentation",
                                      "tracking", "incremental_optimization", "object_shapes"});
-static_assert(kStageNames.size() == kStageCount && kStageKeys.size() == kStageCount);
+static_assert(kStageKeys.size() == kStageCount);
 
-inline std::string_view nameOf(Stage stage) { return kStageNames[static_cast<std::size_t>(stage)]; }
+/// The name for readers: the key's words.
+std::string nameOf(Stage stage);
+
+/// The stages that a frame passes in turn, over one of the two branches: stereo matching or optical flow.
+std::array<Stage, kStageCount - 1> pathOver(Stage branch);
 
 inline double millisecondsBetween(SteadyTime from, SteadyTime to) {
   return std::chrono::duration<double, std::milli>(to - from).count();

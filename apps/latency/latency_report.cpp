@@ -34,7 +34,7 @@ Percentiles percentilesOver(const std::vector<FrameRow>& rows, const Value& valu
 std::vector<StageLatency> stagesOf(const std::vector<FrameRow>& rows) {
   std::vector<StageLatency> stages;
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    stages.push_back({std::string(kStageNames[stage]),
+    stages.push_back({nameOf(static_cast<Stage>(stage)),
                       percentilesOver(rows, [stage](const FrameRow& row) { return row.stages[stage].work_ms; }),
                       percentilesOver(rows, [stage](const FrameRow& row) { return row.stages[stage].wait_ms; }),
                       percentilesOver(rows, [stage](const FrameRow& row) { return row.stages[stage].cpu_ms; })});
@@ -130,15 +130,12 @@ std::vector<WayPart> longestWay(const FrameRow& row) {
     return row.stages[static_cast<std::size_t>(stage)];
   };
   const auto follow = [&](Stage stage) {
-    way.push_back({"waiting for " + std::string(nameOf(stage)), time(stage).wait_ms});
-    way.push_back({std::string(nameOf(stage)), time(stage).work_ms});
+    way.push_back({"waiting for " + nameOf(stage), time(stage).wait_ms});
+    way.push_back({nameOf(stage), time(stage).work_ms});
   };
   const auto ends_ms = [&](Stage stage) { return time(stage).wait_ms + time(stage).work_ms; };
-  follow(Stage::kPrepare);
-  follow(ends_ms(Stage::kStereoMatching) > ends_ms(Stage::kOpticalFlow) ? Stage::kStereoMatching : Stage::kOpticalFlow);
-  for (const Stage stage :
-       {Stage::kSceneFlowSegmentation, Stage::kTracking, Stage::kIncrementalOptimization, Stage::kObjectShapes})
-    follow(stage);
+  const bool stereo_is_last = ends_ms(Stage::kStereoMatching) > ends_ms(Stage::kOpticalFlow);
+  for (const Stage stage : pathOver(stereo_is_last ? Stage::kStereoMatching : Stage::kOpticalFlow)) follow(stage);
   way.push_back({"publishing", row.publish_wait_ms});
   return way;
 }

@@ -43,7 +43,7 @@ std::string exceptionOf(const Work& work) {
 
 void nameProblem(Job& job, Stage stage, const std::string& problem) {
   try {
-    job.problemOf(stage) = std::string(nameOf(stage)) + " failed: " + problem;
+    job.problemOf(stage) = nameOf(stage) + " failed: " + problem;
   } catch (const std::bad_alloc&) {
     job.problemOf(stage) = kNoMemoryLeft;
   }

@@ -175,7 +175,7 @@ struct Timeline {
 Timeline timelineParts() {
   Timeline timeline{{{"waiting", "var(--wait)"}}};
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    timeline.parts.push_back({std::string(kStageNames[stage]), fmt::format("var(--s{})", stage + 1)});
+    timeline.parts.push_back({nameOf(static_cast<Stage>(stage)), fmt::format("var(--s{})", stage + 1)});
   return timeline;
 }
 

@@ -153,7 +153,7 @@ std::string trackColorText(TrackId track) {
 std::string toJson(const ShownRun& run) {
   const StereoCamera& camera = run.camera;
   Json stages = Json::array();
-  for (const auto& name : kStageNames) stages.push_back(name);
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) stages.push_back(nameOf(static_cast<Stage>(stage)));
   return jsonText({{"name", run.name},
                    {"folder", run.folder},
                    {"recorded", run.recorded},

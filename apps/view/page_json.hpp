@@ -37,8 +37,7 @@ std::string eventJson(const RunSnapshot& run, const std::string& frame_json);
 /// Overview of a run that is over: the data of the page's timeline, map and lists, in a few numbers per frame.
 struct RunOverview {
   const RecordedDrive& drive;
-  const std::map<std::int64_t, FrameRow>& rows;        // by frame of the sequence
-  const std::map<std::int64_t, ShownTiming>& timings;  // the same
+  const std::map<std::int64_t, FrameRow>& rows;  // by frame of the sequence
   const std::optional<RunTruth>& truth;
   bool paced = false;  // as in ShownRun
 };

@@ -24,23 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using FileJson = nlohmann::json;
 
-std::vector<std::string> fieldsOf(std::string_view line) {
-  std::vector<std::string> fields;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    fields.emplace_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return fields;
-}
-
-/// The number in the column of that name; 0 where there is none.
-double numberIn(const std::vector<std::string>& header, const std::vector<std::string>& fields,
-                const std::string& name) {
-  const auto column = std::ranges::find(header, name) - header.begin();
-  return column < std::ssize(fields) ? std::strtod(fields[static_cast<std::size_t>(column)].c_str(), nullptr) : 0;
-}
-
 double rateOf(const std::vector<Timestamp>& stamps) {
   constexpr double kUsualRate_hz = 10;
   if (stamps.size() < 2) return kUsualRate_hz;
@@ -61,6 +44,12 @@ RecordedDrive moved(RecordedDrive drive, const SE3& T) {
   return drive;
 }
 
+ShownTiming timingOf(const FrameRow& row) {
+  ShownTiming shown{.latency_ms = row.latency_ms, .decode_ms = row.decode_ms};
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) shown.stages_ms[stage] = row.stages[stage].work_ms;
+  return shown;
+}
+
 std::optional<RunTruth> moved(std::optional<RunTruth> truth, const SE3& T) {
   if (!truth) return truth;
   for (SE3& pose : truth->on_path) pose = T * pose;
@@ -72,22 +61,6 @@ std::optional<RunTruth> moved(std::optional<RunTruth> truth, const SE3& T) {
 }
 
 }  // namespace
-
-std::map<std::int64_t, ShownTiming> readTimings(const fs::path& run_folder) {
-  std::map<std::int64_t, ShownTiming> timings;
-  const auto lines = readLines(run_folder / "frames.csv", LastLine::kDropIfCut);
-  if (lines.empty()) return timings;
-  const auto header = fieldsOf(lines.front().text);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto fields = fieldsOf(lines[i].text);
-    const auto number = [&](const std::string& name) { return numberIn(header, fields, name); };
-    ShownTiming timing{.latency_ms = number("latency_ms"), .decode_ms = number("decode_ms")};
-    for (std::size_t stage = 0; stage < kStageCount; ++stage)
-      timing.stages_ms[stage] = number(std::string(kStageKeys[stage]) + "_ms");
-    timings[static_cast<std::int64_t>(number("frame"))] = timing;
-  }
-  return timings;
-}
 
 std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const fs::path& run_folder) {
   std::map<std::int64_t, std::vector<std::string>> outlines;
@@ -129,7 +102,6 @@ SE3 worldOfOther(const RunFolder& run, const RunFolder& other) {
 RecordedView::RecordedView(const RunFolder& run, const Sequence& sequence, const SE3& T_shown_run)
     : drive_(moved(recordedDrive(run, sequence), T_shown_run)),
       truth_(moved(readRunTruth(run, sequence), T_shown_run)),
-      timings_(readTimings(run.folder)),
       outlines_(readOutlineLines(run.folder)),
       pictures_(sequence) {
   if (drive_.T_world_cam.empty())
@@ -140,8 +112,7 @@ RecordedView::RecordedView(const RunFolder& run, const Sequence& sequence, const
     FrameEstimate estimate = shown(frame, FrameDetail::kWithoutImageParts).estimate;
     if (const auto road = roadUnder(estimate)) roads_[frame] = *road;
   }
-  overview_json_ =
-      toJson(RunOverview{.drive = drive_, .rows = rows_, .timings = timings_, .truth = truth_, .paced = run_.paced});
+  overview_json_ = toJson(RunOverview{.drive = drive_, .rows = rows_, .truth = truth_, .paced = run_.paced});
 }
 
 void RecordedView::describe(const RunFolder& run, const Sequence& sequence) {
@@ -193,8 +164,8 @@ ShownFrame RecordedView::shown(std::int64_t frame, FrameDetail detail) const {
     estimate.head.status = row->second.head.status;
     estimate.head.cause = row->second.head.cause;
     estimate.head.segment = row->second.head.segment;
+    shown.timing = timingOf(row->second);
   }
-  if (const auto timing = timings_.find(frame); timing != timings_.end()) shown.timing = timing->second;
   if (const auto road = roads_.find(frame); road != roads_.end()) shown.road = road->second;
   if (detail == FrameDetail::kWithoutImageParts) return shown;
   shown.truth = truthOf(frame);

@@ -18,8 +18,6 @@ namespace motorcade {
 
 // Further files of a run folder, by frame.
 
-/// Reads `frames.csv` by the names of its columns. Lines that a killed run cut off are left out.
-std::map<std::int64_t, ShownTiming> readTimings(const std::filesystem::path& run_folder);
 /// The lines of `outlines.jsonl`; none where the run did not write them.
 std::map<std::int64_t, std::vector<std::string>> readOutlineLines(const std::filesystem::path& run_folder);
 /// The outline of a line; a damaged line has no polygons. Does not throw.
@@ -55,7 +53,6 @@ class RecordedView : public PageSource {
   RecordedDrive drive_;
   std::optional<RunTruth> truth_;
   std::map<std::int64_t, FrameRow> rows_;
-  std::map<std::int64_t, ShownTiming> timings_;
   std::map<std::int64_t, std::vector<std::string>> outlines_;  // lines of outlines.jsonl
   std::map<std::int64_t, RoadPlane> roads_;
   RunCounts counts_;

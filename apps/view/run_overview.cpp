@@ -55,18 +55,13 @@ Json marksJson(const RunOverview& overview) {
 }
 
 /// Time of a frame: the latency since it was due if the run is paced, otherwise the processing time alone.
-double timeOf_ms(const ShownTiming& timing, bool paced) {
-  return paced ? timing.latency_ms : processing_ms(timing.stages_ms);
-}
+double timeOf_ms(const FrameRow& row, bool paced) { return paced ? row.latency_ms : processing_ms(row); }
 
 /// Times of the frames that entered the pipeline.
 std::vector<std::pair<std::int64_t, double>> times_ms(const RunOverview& overview) {
   std::vector<std::pair<std::int64_t, double>> times;
-  for (const auto& [frame, timing] : overview.timings) {
-    const auto row = overview.rows.find(frame);
-    if (row != overview.rows.end() && row->second.head.status == FrameStatus::kDropped) continue;
-    times.emplace_back(frame, timeOf_ms(timing, overview.paced));
-  }
+  for (const auto& [frame, row] : overview.rows)
+    if (row.head.status != FrameStatus::kDropped) times.emplace_back(frame, timeOf_ms(row, overview.paced));
   return times;
 }
 
@@ -77,7 +72,7 @@ Json percentilesJson(const RunOverview& overview, const std::vector<std::pair<st
   Json stages = Json::array();
   for (std::size_t stage = 0; stage < kStageCount; ++stage) {
     std::vector<double> work_ms;
-    for (const auto& [frame, time_ms] : times) work_ms.push_back(overview.timings.at(frame).stages_ms[stage]);
+    for (const auto& [frame, time_ms] : times) work_ms.push_back(overview.rows.at(frame).stages[stage].work_ms);
     stages.push_back(shortened(percentilesOf(std::move(work_ms)).p95));
   }
   return {{"frames", times.size()},

@@ -22,7 +22,8 @@ struct SizedKind {
   double top_speed_mps;
 };
 
-/// Kinds and sizes. Vans are cars here, with a line of their own, as they are a size of their own.
+/// Kinds and sizes. Vans are cars here, with a line of their own, as they are a size of their own. Vehicles vary less
+/// than in `kKindsOfStreets` of the reported belief: the search for outlines needs sharp volumes.
 const std::array<SizedKind, 5> kKinds{{{ObjectKind::kCar, {{4.1, 1.72, 1.55}, {0.5, 0.15, 0.15}}, 0.7, 60},
                                        {ObjectKind::kCar, {{5.2, 2.0, 2.15}, {0.6, 0.2, 0.25}}, 0.12, 60},
                                        {ObjectKind::kLargeVehicle, {{10.0, 2.55, 3.2}, {2.5, 0.15, 0.4}}, 0.06, 40},

@@ -13,14 +13,19 @@
 
 namespace motorcade {
 
-std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start) {
+std::vector<TextLine> readTableWithHeader(const std::filesystem::path& file, std::string_view header_start) {
   auto lines = readLines(file, LastLine::kDropIfCut);
   if (lines.empty()) return lines;
   if (!lines.front().text.starts_with(header_start)) {
     throw InputError(file.string() + ", line " + std::to_string(lines.front().number) +
                      ": the header must begin with " + std::string(header_start));
   }
-  lines.erase(lines.begin());
+  return lines;
+}
+
+std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start) {
+  auto lines = readTableWithHeader(file, header_start);
+  if (!lines.empty()) lines.erase(lines.begin());
   return lines;
 }
 

@@ -29,8 +29,10 @@ enum class LastLine { kKeep, kDropIfCut };
 std::vector<TextLine> readLines(const std::filesystem::path& file, LastLine last_line = LastLine::kKeep,
                                 std::size_t limit_bytes = kMaxText_bytes);
 
-/// Reads the lines of a run's table after its header, whose beginning is checked. A killed run may have left a cut
-/// line, which is dropped, or no header in an empty file. Throws InputError.
+/// Reads the lines of a run's table, the first of which is its header, whose beginning is checked. A killed run may
+/// have left a cut line, which is dropped, or no header in an empty file. Throws InputError.
+std::vector<TextLine> readTableWithHeader(const std::filesystem::path& file, std::string_view header_start);
+/// The same lines without the header.
 std::vector<TextLine> readTable(const std::filesystem::path& file, std::string_view header_start);
 
 /// The whole file; throws InputError when it cannot be read or is larger than `limit_bytes`.

@@ -46,10 +46,10 @@ void requireInstances(const fs::path& folder, int width_px, int height_px) {
 }
 
 InstanceSource::InstanceSource(std::unique_ptr<PairSource> pairs, fs::path folder, int width_px, int height_px)
-    : pairs_(std::move(pairs)), folder_(std::move(folder)), width_px_(width_px), height_px_(height_px) {}
+    : ForwardingSource(std::move(pairs)), folder_(std::move(folder)), width_px_(width_px), height_px_(height_px) {}
 
 std::optional<StereoFrame> InstanceSource::next() {
-  auto frame = pairs_->next();
+  auto frame = ForwardingSource::next();
   if (frame && !frame->rejected()) frame->inputs.instances = labelsOf(frame->head.frame);
   return frame;
 }
@@ -69,7 +69,7 @@ std::shared_ptr<const InstanceLabels> InstanceSource::labelsOf(FrameId frame) tr
 }
 
 SourceEnd InstanceSource::finish() {
-  SourceEnd end = pairs_->finish();
+  SourceEnd end = ForwardingSource::finish();
   if (unreadable_ > 0)
     end.instances = countOfFiles(unreadable_) + " left out: " + first_problem_;
   else if (read_ == 0)

@@ -16,26 +16,18 @@ void requireInstances(const std::filesystem::path& folder, int width_px, int hei
 
 /// The pairs of another source, each with the instance labels of its frame from a folder. Another program's
 /// segmentation wrote them: NNNNNN.png, gray of 8 or 16 bits or with a palette. Frames without a file have none.
-class InstanceSource final : public PairSource {
+class InstanceSource final : public ForwardingSource {
  public:
   /// Labels have the size of the rectified images.
   InstanceSource(std::unique_ptr<PairSource> pairs, std::filesystem::path folder, int width_px, int height_px);
 
   /// Labels that cannot be read are left out, and reported at the end.
   std::optional<StereoFrame> next() override;
-  void stop() override { pairs_->stop(); }
   SourceEnd finish() override;
-
-  FrameId first() const override { return pairs_->first(); }
-  Timestamp stampOf(FrameId frame) const override { return pairs_->stampOf(frame); }
-  double shareOutside() const override { return pairs_->shareOutside(); }
-  std::size_t highWater() const override { return pairs_->highWater(); }
-  std::size_t capacity() const override { return pairs_->capacity(); }
 
  private:
   std::shared_ptr<const InstanceLabels> labelsOf(FrameId frame);
 
-  std::unique_ptr<PairSource> pairs_;
   std::filesystem::path folder_;
   int width_px_, height_px_;
   ObjectPool<InstanceLabels> labels_;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/messages.hpp"
 
@@ -38,6 +40,25 @@ class PairSource {
   /// Most pairs ever waiting, and how many may. Final once `finish` has returned.
   virtual std::size_t highWater() const = 0;
   virtual std::size_t capacity() const = 0;
+};
+
+/// The pairs of another source, unchanged: a base for sources that add something to each pair.
+class ForwardingSource : public PairSource {
+ public:
+  explicit ForwardingSource(std::unique_ptr<PairSource> pairs) : pairs_(std::move(pairs)) {}
+
+  std::optional<StereoFrame> next() override { return pairs_->next(); }
+  void stop() override { pairs_->stop(); }
+  SourceEnd finish() override { return pairs_->finish(); }
+
+  FrameId first() const override { return pairs_->first(); }
+  Timestamp stampOf(FrameId frame) const override { return pairs_->stampOf(frame); }
+  double shareOutside() const override { return pairs_->shareOutside(); }
+  std::size_t highWater() const override { return pairs_->highWater(); }
+  std::size_t capacity() const override { return pairs_->capacity(); }
+
+ private:
+  std::unique_ptr<PairSource> pairs_;
 };
 
 }  // namespace motorcade

@@ -123,12 +123,12 @@ void writeVehicleMotion(const std::vector<VehicleMotionSample>& samples, const f
 
 /// All samples may come at once, before the first pair.
 VehicleMotionSource::VehicleMotionSource(std::unique_ptr<PairSource> pairs, std::vector<VehicleMotionSample> samples)
-    : pairs_(std::move(pairs)),
+    : ForwardingSource(std::move(pairs)),
       samples_(std::move(samples)),
       log_(std::make_shared<VehicleMotionLog>(samples_.size() + 1)) {}
 
 std::optional<StereoFrame> VehicleMotionSource::next() {
-  auto frame = pairs_->next();
+  auto frame = ForwardingSource::next();
   if (!frame) return frame;
   for (; next_ < samples_.size() && samples_[next_].stamp <= frame->head.stamp; ++next_) log_->add(samples_[next_]);
   frame->inputs.vehicle_motion = log_;

@@ -1,5 +1,9 @@
 #include "io/results/frame_table.hpp"
 
+#include <functional>
+#include <map>
+#include <utility>
+
 #include "io/files/number_text.hpp"
 #include "io/files/text_file.hpp"
 
@@ -23,32 +27,48 @@ constexpr std::array kCauses = {FrameCause::kNone,         FrameCause::kAfterGap
 constexpr std::array<std::string_view, kCauseCount> kCauseNames = {
     "none", "after_gap", "few_points", "nothing_found", "unlinked", "failed", "unusable", "out_of_order", "too_late"};
 
-/// Reads the columns that were added in later versions.
-void readWaits(FieldReader& fields, FrameRow& row) {
-  row.has_waits = true;
-  row.entry_wait_ms = fields.number("entry_wait_ms");
-  for (auto& stage : row.stages) stage.wait_ms = fields.number("wait_ms");
-  row.publish_wait_ms = fields.number("publish_wait_ms");
-  for (auto& stage : row.stages) stage.cpu_ms = fields.number("cpu_ms");
-  row.points = static_cast<int>(fields.integer("points"));
-  row.inliers = static_cast<int>(fields.integer("inliers"));
-  row.objects = static_cast<int>(fields.integer("objects"));
+void readColumn(FieldReader& fields, std::string_view name, double& time_ms) { time_ms = fields.number(name); }
+void readColumn(FieldReader& fields, std::string_view name, std::int64_t& number) { number = fields.integer(name); }
+void readColumn(FieldReader& fields, std::string_view name, int& count) {
+  count = static_cast<int>(fields.integer(name));
+}
+void readColumn(FieldReader& fields, std::string_view name, FrameStatus& status) {
+  status = fields.byName(name, kStatuses, writtenName).status;
+}
+void readColumn(FieldReader& fields, std::string_view name, FrameCause& cause) {
+  cause = fields.byName(name, kCauses, causeName);
 }
 
-FrameRow readFrame(FieldReader& fields) {
-  FrameRow row;
-  row.head.frame.value = fields.integer("frame");
-  row.head.status = fields.byName("status", kStatuses, writtenName).status;
-  row.head.stamp.ns = fields.integer("stamp_ns");
-  row.latency_ms = fields.number("latency_ms");
-  row.decode_ms = fields.number("decode_ms");
-  for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    row.stages[stage].work_ms = fields.number(kStageKeys[stage]);
-  if (fields.atEnd()) return row;  // files of the first versions end here
-  row.head.cause = fields.byName("cause", kCauses, causeName);
-  row.head.segment = static_cast<int>(fields.integer("segment"));
-  if (!fields.atEnd()) readWaits(fields, row);
-  return row;
+/// Reads the field of the column of that name into a row.
+using ColumnReader = std::function<void(FieldReader&, std::string_view name, FrameRow&)>;
+
+/// The readers of all columns, by their names in the header.
+std::map<std::string, ColumnReader, std::less<>> columnReaders() {
+  std::map<std::string, ColumnReader, std::less<>> readers;
+  const auto add = [&readers](const std::string& name, auto place) {
+    readers[name] = [place](FieldReader& fields, std::string_view column, FrameRow& row) {
+      readColumn(fields, column, std::invoke(place, row));
+    };
+  };
+  add("frame", [](FrameRow& row) -> std::int64_t& { return row.head.frame.value; });
+  add("status", [](FrameRow& row) -> FrameStatus& { return row.head.status; });
+  add("stamp_ns", [](FrameRow& row) -> std::int64_t& { return row.head.stamp.ns; });
+  add("latency_ms", &FrameRow::latency_ms);
+  add("decode_ms", &FrameRow::decode_ms);
+  add("cause", [](FrameRow& row) -> FrameCause& { return row.head.cause; });
+  add("segment", [](FrameRow& row) -> int& { return row.head.segment; });
+  add("entry_wait_ms", &FrameRow::entry_wait_ms);
+  add("publish_wait_ms", &FrameRow::publish_wait_ms);
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    const std::string stage(kStageKeys[i]);
+    add(stage + "_ms", [i](FrameRow& row) -> double& { return row.stages[i].work_ms; });
+    add(stage + "_wait_ms", [i](FrameRow& row) -> double& { return row.stages[i].wait_ms; });
+    add(stage + "_cpu_ms", [i](FrameRow& row) -> double& { return row.stages[i].cpu_ms; });
+  }
+  add("points", &FrameRow::points);
+  add("inliers", &FrameRow::inliers);
+  add("objects", &FrameRow::objects);
+  return readers;
 }
 
 }  // namespace
@@ -113,9 +133,27 @@ std::string frameLine(const FrameTiming& timing) {
 std::vector<FrameRow> readFrames(const std::filesystem::path& file) {
   std::vector<FrameRow> rows;
   if (!std::filesystem::exists(file)) return rows;
-  for (const auto& line : readTable(file, "frame,status,stamp_ns,latency_ms")) {
-    FieldReader fields(file, line, ',');
-    rows.push_back(readFrame(fields));
+  const auto lines = readTableWithHeader(file, "frame,status,stamp_ns,latency_ms");
+  if (lines.empty()) return rows;
+  const auto readers = columnReaders();
+  std::vector<std::pair<std::string_view, const ColumnReader*>> columns;  // without a reader: of another version
+  bool has_waits = false;
+  for (FieldReader header(file, lines.front(), ','); !header.atEnd();) {
+    const std::string_view name = header.word("column");
+    const auto reader = readers.find(name);
+    columns.emplace_back(name, reader == readers.end() ? nullptr : &reader->second);
+    has_waits |= name == "entry_wait_ms";
+  }
+  for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
+    FieldReader fields(file, *line, ',');
+    FrameRow& row = rows.emplace_back();
+    row.has_waits = has_waits;
+    for (const auto& [name, read] : columns) {
+      if (read)
+        (*read)(fields, name, row);
+      else
+        fields.word(name);
+    }
   }
   return rows;
 }

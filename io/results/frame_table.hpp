@@ -25,12 +25,13 @@ struct FrameRow {
   std::array<StageTime, kStageCount> stages{};
   double entry_wait_ms = 0, publish_wait_ms = 0;
   int points = 0, inliers = 0, objects = 0;
-  bool has_waits = false;  // false in files of earlier versions: what stands in them ends with the segment
+  bool has_waits = false;  // false in files of earlier versions, which end with the segment or before
 };
 
 std::string framesHeader();
 std::string frameLine(const FrameTiming& timing);
-/// Empty where there is no such file. Throws InputError naming file and line.
+/// Reads columns by their names in the header: unknown ones are passed over, missing ones leave a row's defaults.
+/// Empty where there is no such file. Throws InputError naming file, line and column.
 std::vector<FrameRow> readFrames(const std::filesystem::path& file);
 
 }  // namespace motorcade

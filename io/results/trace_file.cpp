@@ -1,6 +1,5 @@
 #include "io/results/trace_file.hpp"
 
-#include <array>
 #include <chrono>
 #include <string_view>
 #include <utility>
@@ -115,14 +114,9 @@ void TraceFile::addArrows(const FrameTiming& timing) {
                        R"(,"id":)" + std::to_string(frame.value);
     add(phase == 's' ? text : text + R"(,"bp":"e")");
   };
-  constexpr std::array kWay{Stage::kPrepare,
-                            Stage::kOpticalFlow,
-                            Stage::kSceneFlowSegmentation,
-                            Stage::kTracking,
-                            Stage::kIncrementalOptimization,
-                            Stage::kObjectShapes};
-  for (const Stage stage : kWay) {
-    const char phase = stage == kWay.front() ? 's' : stage == kWay.back() ? 'f' : 't';
+  const auto path = pathOver(Stage::kOpticalFlow);
+  for (const Stage stage : path) {
+    const char phase = stage == path.front() ? 's' : stage == path.back() ? 'f' : 't';
     if (timing.of(stage).ran()) arrow("way of a frame", phase, timing.of(stage), timing.head.frame);
   }
   if (!before_ || !timing.of(Stage::kOpticalFlow).ran() || !before_->of(Stage::kOpticalFlow).ran()) return;

@@ -1,6 +1,6 @@
 #include "core/frame_timing.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace motorcade {
 namespace {
@@ -15,9 +15,9 @@ FrameTiming timing() {
   timing.due = SteadyTime(milliseconds(1000));
   timing.admitted = timing.due + milliseconds(5);
   SteadyTime ready = timing.admitted;
-  for (const Stage stage : {Stage::kPrepare, Stage::kStereoMatching, Stage::kOpticalFlow, Stage::kSceneFlowSegmentation,
-                            Stage::kTracking, Stage::kIncrementalOptimization, Stage::kObjectShapes}) {
-    const auto start = ready + milliseconds(static_cast<int>(stage));
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    const auto stage = static_cast<Stage>(i);
+    const auto start = ready + milliseconds(static_cast<int>(i));
     timing.of(stage) = {start, start + milliseconds(2), 0};
     if (stage != Stage::kStereoMatching) ready = timing.of(stage).end;  // flow starts when it does, not after it
     if (stage == Stage::kStereoMatching) ready = timing.of(Stage::kPrepare).end;
@@ -30,10 +30,22 @@ TEST(FrameTiming, AStageWaitsFromWhenAllItNeedsWasThere) {
   FrameTiming frame = timing();
   EXPECT_NEAR(frame.entry_wait_ms(), 5, kTick_ms);
   for (std::size_t stage = 0; stage < kStageCount; ++stage)
-    EXPECT_NEAR(frame.wait_ms(static_cast<Stage>(stage)), static_cast<double>(stage), kTick_ms) << kStageNames[stage];
+    EXPECT_NEAR(frame.wait_ms(static_cast<Stage>(stage)), static_cast<double>(stage), kTick_ms) << kStageKeys[stage];
   EXPECT_NEAR(frame.publish_wait_ms(), 3, kTick_ms);
   frame.of(Stage::kStereoMatching).end = frame.of(Stage::kSceneFlowSegmentation).start;  // the last of two to end
   EXPECT_NEAR(frame.wait_ms(Stage::kSceneFlowSegmentation), 0, kTick_ms);
+}
+
+TEST(Stages, AreNamedByTheWordsOfTheirKeys) {
+  EXPECT_EQ(nameOf(Stage::kPrepare), "prepare");
+  EXPECT_EQ(nameOf(Stage::kSceneFlowSegmentation), "scene flow segmentation");
+}
+
+TEST(Stages, ThePathOfAFrameLeavesOutOneBranch) {
+  EXPECT_THAT(pathOver(Stage::kStereoMatching),
+              testing::ElementsAre(Stage::kPrepare, Stage::kStereoMatching, Stage::kSceneFlowSegmentation,
+                                   Stage::kTracking, Stage::kIncrementalOptimization, Stage::kObjectShapes));
+  EXPECT_EQ(pathOver(Stage::kOpticalFlow)[1], Stage::kOpticalFlow);
 }
 
 TEST(FrameTiming, WhatNeverHappenedTakesNoTime) {

@@ -298,16 +298,6 @@ TEST(Metrics, AreInTheExpositionFormat) {
   EXPECT_EQ(values.at("motorcade_stage_seconds_count{stage=\"prepare\"}"), 0);
 }
 
-TEST(RecordedFiles, TimesAreReadByTheNamesOfTheirColumns) {
-  const test::TemporaryFolder folder;
-  folder.write("frames.csv", "frame,latency_ms,extra,tracking_ms\n4,21.5,x,0.75\n5,2");
-  const auto timings = readTimings(folder.path());
-  ASSERT_EQ(timings.size(), 1) << "the second line was cut off";
-  EXPECT_EQ(timings.at(4).latency_ms, 21.5);
-  EXPECT_EQ(timings.at(4).stages_ms[static_cast<std::size_t>(Stage::kTracking)], 0.75);
-  EXPECT_EQ(timings.at(4).stages_ms[0], 0);
-}
-
 TEST(RecordedFiles, OutlinesComeBackAsTheyWereWritten) {
   const test::TemporaryFolder folder;
   const std::vector<Polygon> polygons{{{1, 2}, {3, 4}, {5, 6}}};

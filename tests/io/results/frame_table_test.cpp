@@ -44,15 +44,32 @@ TEST(FrameTable, HasAColumnForEachField) {
 
 TEST(FrameTable, FilesOfEarlierVersionsHaveNoWaits) {
   const test::TemporaryFolder folder;
-  const auto file = folder.write("frames.csv",
-                                 "frame,status,stamp_ns,latency_ms,decode_ms,prepare_ms\n"
-                                 "3,degraded,300,30.5,8,1,2,3,4,5,6,7,after_gap,1\n"
-                                 "4,good,400,20,8,1,2,3,4,5,6,7\n");
-  const auto rows = readFrames(file);
-  ASSERT_EQ(rows.size(), 2u);
+  const std::string header = framesHeader();
+  const auto second = folder.write("second.csv", header.substr(0, header.find(",entry_wait_ms")) +
+                                                     "\n3,degraded,300,30.5,8,1,2,3,4,5,6,7,after_gap,1\n");
+  const auto rows = readFrames(second);
+  ASSERT_EQ(rows.size(), 1u);
   EXPECT_FALSE(rows[0].has_waits);
+  EXPECT_EQ(rows[0].head.cause, FrameCause::kAfterGap);
   EXPECT_EQ(rows[0].head.segment, 1);
-  EXPECT_DOUBLE_EQ(rows[1].stages.back().work_ms, 7);
+  const auto first =
+      folder.write("first.csv", header.substr(0, header.find(",cause")) + "\n4,good,400,20,8,1,2,3,4,5,6,7\n");
+  EXPECT_DOUBLE_EQ(readFrames(first).at(0).stages.back().work_ms, 7);
+}
+
+TEST(FrameTable, ColumnsAreReadByTheirNames) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("frames.csv",
+                                 "frame,status,stamp_ns,latency_ms,extra,tracking_ms,objects,cause\n"
+                                 "4,degraded,400,21.5,x,0.75,3,after_gap\n"
+                                 "5,good,500,2");
+  const auto rows = readFrames(file);
+  ASSERT_EQ(rows.size(), 1u) << "the second line was cut off";
+  EXPECT_EQ(rows[0].latency_ms, 21.5);
+  EXPECT_EQ(rows[0].stages[static_cast<std::size_t>(Stage::kTracking)].work_ms, 0.75);
+  EXPECT_EQ(rows[0].stages[0].work_ms, 0);
+  EXPECT_EQ(rows[0].objects, 3);
+  EXPECT_EQ(rows[0].head.cause, FrameCause::kAfterGap);
 }
 
 TEST(FrameTable, NamesFileAndLineOfWhatIsMissing) {
