@@ -118,12 +118,14 @@ std::optional<Eigen::MatrixXd> squareOfSolution(const FactorGraph& graph, const 
     while (used < stride && begins[used] < passed) ++used;
     const int width = padded(used);
     Eigen::Map<RowMajorMatrixXd> y(memory.data(), clique.size, width);
-    for (int i = 0; i < clique.size; ++i) copyFours(&rest(rows[i], 0), &y(i, 0), width);
+    const auto row_of = [&](int i) { return rest.data() + std::ptrdiff_t{rows[i]} * stride; };
+    for (int i = 0; i < clique.size; ++i) copyFours(row_of(i), y.data() + std::ptrdiff_t{i} * width, width);
     const int first = firstRowThatIsNotZero(y, clique.frontal_size), solved = clique.frontal_size - first;
     double* const from = y.data() + std::ptrdiff_t{first} * width;
     forwardSubstitute(lowerRight(clique.panelView(), first), from, width);
     subtractOuterProduct(minus_square.data(), stride, from, width, used, solved);
-    for (int i = clique.frontal_size; i < clique.size; ++i) copyFours(&y(i, 0), &rest(rows[i], 0), width);
+    for (int i = clique.frontal_size; i < clique.size; ++i)
+      copyFours(y.data() + std::ptrdiff_t{i} * width, row_of(i), width);
   }
   Eigen::MatrixXd square = -minus_square;
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
