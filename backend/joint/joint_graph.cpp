@@ -60,6 +60,7 @@ PoseVariable posesOf(const ObjectTrack& track) {
 JointGraph::JointGraph(const JointParams& params, const WindowParams& window, const StereoCamera& camera)
     : SmoothingWindow(solverParams(params, window), "travel"),
       params_(requireValid(params)),
+      window_frames_(window.window_frames),
       camera_(camera),
       offset_(solver_, params.offset_sigma_px),
       shake_(params.shake_sigma_px),
@@ -79,7 +80,7 @@ void JointGraph::add(const FrameMeasurements& measurements) {
   problems_.clear();
   std::erase_if(landmarks_, [this](const auto& body) { return !tracks_.contains(body.first); });
   addCamera(measurements);
-  at_rest_.add(frame_count_, frames_);
+  at_rest_.add(frame_count_, frames_, leavingWithin(params_.frames_per_elimination));
   const bool alone = tracks_.empty() && measurements.objects.empty();
   dropTroubled(solver_.update(alone ? IncrementalSolver::Correction::kNow : IncrementalSolver::Correction::kLater));
   addObjects(measurements);
@@ -109,7 +110,7 @@ void JointGraph::addObjects(const FrameMeasurements& measurements) {
     if (!seen_now && showsPoints(measurements.head))
       landmarks.points().observe(measurements.head.frame, {});  // its tracks end
     objects_.renewMotion(track, measurements.head.frame);
-    landmarks.renew(frame_count_, posesOf(track));
+    landmarks.renew(frame_count_, posesOf(track), leavingWithin(1));
   }
   dropTroubled(solver_.update());
 }
@@ -198,6 +199,12 @@ void JointGraph::converge() {
 }
 
 void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }
+
+/// The last of the frames that leave the window within so many frames, this one included; none while it fills.
+FrameId JointGraph::leavingWithin(int frames) const {
+  const std::ptrdiff_t leaving = std::ssize(frames_) - window_frames_ + frames - 1;
+  return window_frames_ > 0 && leaving > 0 ? std::next(frames_.begin(), leaving - 1)->first : FrameId{};
+}
 
 void JointGraph::retiring(FrameId oldest) {
   cameras_.forgetStart();

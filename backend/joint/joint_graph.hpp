@@ -54,8 +54,10 @@ class JointGraph final : public SmoothingWindow {
   void calibrate(FrameId newest);
   void tellOfOffset();
   void linearizeLandmarksAnew();
+  FrameId leavingWithin(int frames) const;
 
   JointParams params_;
+  int window_frames_;
   StereoCamera camera_;
   RigOffset offset_;
   RigShake shake_;

@@ -28,11 +28,13 @@ LandmarkBundles::LandmarkBundles(const Params& params, const NoiseLevel& noise, 
       points_(params.points),
       noise_(noise) {}
 
-void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_variable) {
+void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_variable, FrameId leaving) {
   if (newest_) solver_.removeFactor(newest_->factor);
   newest_.reset();
+  points_.endFrom(leaving);
   std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
-  if (frame_count % params_.closing_frames == 0) closeEnded(pose_variable);
+  const auto leaves = [&](const LandmarkTrack& track) { return track.views.front().frame <= leaving; };
+  if (frame_count % params_.closing_frames == 0 || std::ranges::any_of(ended_, leaves)) closeEnded(pose_variable);
   const std::vector<LandmarkTrack*> tracks = newestTracks();
   if (tracks.empty()) return;
   const Gathered gathered = gather(tracks, pose_variable);

@@ -32,8 +32,9 @@ class LandmarkBundles {
   bool hasNewest() const { return newest_.has_value(); }
 
   /// Makes the factor over the tracks that go on, and over those that ended lately, anew. In one of some frames ended
-  /// tracks get a lasting factor. `frame_count` counts the frames of the drive from zero.
-  void renew(std::int64_t frame_count, const PoseVariable& pose_variable);
+  /// tracks get a lasting factor, and at once if they have views in frames up to `leaving`, which leave the graph
+  /// before the next call. `frame_count` counts the frames of the drive from zero.
+  void renew(std::int64_t frame_count, const PoseVariable& pose_variable, FrameId leaving = {});
   /// Makes the factors over ended tracks anew, as the offset has moved.
   void relinearize(const PoseVariable& pose_variable);
   /// Fixes the factors over ended tracks.

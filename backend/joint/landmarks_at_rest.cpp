@@ -43,11 +43,11 @@ int LandmarksAtRest::seenAgain() {
       std::ranges::count_if(bundles_.points().seenNow(), [](auto* track) { return track->views.size() >= 2; }));
 }
 
-void LandmarksAtRest::add(std::int64_t frame_count, const Frames& frames) {
+void LandmarksAtRest::add(std::int64_t frame_count, const Frames& frames, FrameId leaving) {
   const bool due = frame_count % params_.frames_per_elimination == 0 || frames.rbegin()->second.weak;
   if (!due && bundles_.hasNewest())
     if (const auto alignment = alignNewest(frames)) return alignments_.push_back(*alignment);
-  eliminate(frame_count, frames);
+  eliminate(frame_count, frames, leaving);
 }
 
 bool LandmarksAtRest::eliminateAligned(std::int64_t frame_count, const Frames& frames) {
@@ -67,9 +67,9 @@ void LandmarksAtRest::removeAlignments() {
   alignments_.clear();
 }
 
-void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames) {
+void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames, FrameId leaving) {
   removeAlignments();
-  bundles_.renew(frame_count, camerasOf(frames));
+  bundles_.renew(frame_count, camerasOf(frames), leaving);
 }
 
 void LandmarksAtRest::relinearize(const Frames& frames) { bundles_.relinearize(camerasOf(frames)); }

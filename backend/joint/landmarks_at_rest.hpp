@@ -28,8 +28,9 @@ class LandmarksAtRest {
   /// Number of landmarks of the newest frame that were seen before.
   int seenAgain();
 
-  /// Links the newest camera; `frame_count` counts the frames of the drive from zero.
-  void add(std::int64_t frame_count, const Frames& frames);
+  /// Links the newest camera; `frame_count` counts the frames of the drive from zero. Frames up to `leaving` leave the
+  /// graph before landmarks are eliminated again.
+  void add(std::int64_t frame_count, const Frames& frames, FrameId leaving);
   /// Eliminates the landmarks to which the newest cameras are aligned. Returns false when there is nothing to do.
   bool eliminateAligned(std::int64_t frame_count, const Frames& frames);
   void relinearize(const Frames& frames);
@@ -37,7 +38,7 @@ class LandmarksAtRest {
   bool retire(FrameId oldest, const Frames& frames);
 
  private:
-  void eliminate(std::int64_t frame_count, const Frames& frames);
+  void eliminate(std::int64_t frame_count, const Frames& frames, FrameId leaving = {});
   void removeAlignments();
   std::optional<FactorId> alignNewest(const Frames& frames);
   std::vector<ViewOfKnown> knownViews(std::span<LandmarkTrack* const> tracks, const FrameIndex& index,

@@ -25,7 +25,7 @@ class Street {
     camera.x = solver_.addVariable(truth(frame) * beside);
     const double sigma = frame == 0 ? 1e-3 : 10;
     solver_.addFactor(priorFactor(camera.x, truth(frame) * beside, poseSigmas(sigma, sigma, sigma)));
-    at_rest_.add(frame, frames_);
+    at_rest_.add(frame, frames_, {});
     EXPECT_TRUE(solver_.update().problems.empty()) << frame;
   }
   double error_m(int frame) const {
