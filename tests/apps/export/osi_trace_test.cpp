@@ -216,7 +216,7 @@ TEST_F(OsiTraceFile, CandidatesAddUpToOne) {
         {MovingObject::TYPE_VEHICLE, VehicleType::TYPE_BICYCLE}}},
       {ObjectKind::kPedestrian, {{MovingObject::TYPE_PEDESTRIAN, VehicleType::TYPE_UNKNOWN}}}};
   for (const auto& [kind, types] : expected) {
-    const DetectedMovingObject object = carOf([kind = kind](ObjectEstimate& it) { it.cuboid->kind = kind; });
+    const DetectedMovingObject object = carOf([known = kind](ObjectEstimate& it) { it.cuboid->kind = known; });
     double sum = 0, told = 0;
     ASSERT_EQ(object.candidate_size(), static_cast<int>(types.size()) + 1);
     for (int i = 0; i < object.candidate_size(); ++i) {
