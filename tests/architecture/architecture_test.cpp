@@ -73,8 +73,8 @@ std::vector<std::string> includesIn(const std::string& folder,
 }
 
 TEST(Architecture, IncludesFollowTheArrowsBetweenFolders) {
-  for (const auto& [folder, allowed] : kMayInclude) {
-    const auto forbidden = includesIn(folder, [&allowed = allowed](const std::string& included) {
+  for (const auto& [folder, targets] : kMayInclude) {
+    const auto forbidden = includesIn(folder, [&allowed = targets](const std::string& included) {
       const std::string target = included.substr(0, included.find('/'));
       return kMayInclude.contains(target) && !allowed.contains(target);
     });
@@ -106,9 +106,9 @@ std::set<std::string> roomsBelow(const std::string& folder, const std::string& r
 }
 
 TEST(Architecture, IncludesFollowTheArrowsBetweenRooms) {
-  for (const auto& [folder, rooms] : kRooms) {
+  for (const auto& [name, rooms] : kRooms) {
     std::vector<std::string> against;
-    forEachInclude(folder, [&, &folder = folder](const std::string& file, const std::string& included) {
+    forEachInclude(name, [&, &folder = name](const std::string& file, const std::string& included) {
       if (included.starts_with(folder + "/") &&
           !roomsBelow(folder, roomOf(folder, file)).contains(roomOf(folder, included)))
         // NOLINTNEXTLINE(performance-inefficient-string-concatenation): in a test
