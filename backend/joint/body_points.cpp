@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 #include <utility>
 
 #include "backend/joint/merge_by_point.hpp"
@@ -55,12 +54,17 @@ void BodyPoints::extend(Candidate& candidate, const LandmarkTrack::View& view) {
 }
 
 void BodyPoints::cut(Candidate& candidate) {
+  split(candidate, [this](const LandmarkTrack::View& view) { return isKept(view.frame); });
+}
+
+/// Gives the views that do not stay to a track that ended.
+template <class Stays>
+void BodyPoints::split(Candidate& candidate, const Stays& stays) {
   auto& views = candidate.track.views;
-  const auto kept = std::stable_partition(views.begin(), views.end(),
-                                          [this](const LandmarkTrack::View& view) { return !isKept(view.frame); });
+  const auto kept = std::stable_partition(views.begin(), views.end(), std::not_fn(stays));
   LandmarkTrack ended{candidate.track.point, {views.begin(), kept}, candidate.track.estimate};
   views.erase(views.begin(), kept);
-  if (ended.views.size() >= 2) ended_.push_back(std::move(ended));
+  if (candidate.chosen && ended.views.size() >= 2) ended_.push_back(std::move(ended));
 }
 
 bool BodyPoints::isKept(FrameId frame) const {
@@ -76,14 +80,16 @@ void BodyPoints::end(Candidate& candidate) {
   candidate.track.views.clear();
 }
 
+/// The points take turns, so that the tracks that end link each frame to the leaving one.
 void BodyPoints::endFrom(FrameId oldest) {
+  const FrameId middle{(oldest.value + newest_.value) / 2};
   for (Candidate& candidate : candidates_) {
-    auto& views = candidate.track.views;
-    if (views.front().frame > oldest) continue;
-    LandmarkTrack ended{candidate.track.point, {views.begin(), std::prev(views.end())}, candidate.track.estimate};
-    views.erase(views.begin(), std::prev(views.end()));
-    if (candidate.chosen && ended.views.size() >= 2) ended_.push_back(std::move(ended));
+    if (candidate.track.views.front().frame > oldest) continue;
+    const std::int64_t point = candidate.track.point.value;
+    split(candidate,
+          [&](const LandmarkTrack::View& view) { return view.frame > middle && (view.frame.value + point) % 2 == 0; });
   }
+  std::erase_if(candidates_, [](const Candidate& candidate) { return candidate.track.views.empty(); });
 }
 
 void BodyPoints::forget(std::span<const PointMeasurement> points) {

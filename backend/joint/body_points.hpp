@@ -61,7 +61,7 @@ class BodyPoints {
   /// Forgets tracks that have not ended, of points that belong to another body.
   void forget(std::span<const PointMeasurement> points);
 
-  /// Ends the tracks with views in frames up to this one. The newest view begins a track of its own.
+  /// Ends the tracks with views in frames up to this one. Every other of their newest views goes on as a track.
   void endFrom(FrameId oldest);
   /// Takes the tracks that ended since the last call, with two views and more.
   std::vector<LandmarkTrack> takeEnded();
@@ -77,6 +77,8 @@ class BodyPoints {
   };
   void extend(Candidate& candidate, const LandmarkTrack::View& view);
   void cut(Candidate& candidate);
+  template <class Stays>
+  void split(Candidate& candidate, const Stays& stays);
   bool isKept(FrameId frame) const;
   void end(Candidate& candidate);
   void choose();

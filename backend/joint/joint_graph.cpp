@@ -202,16 +202,15 @@ void JointGraph::dropped(TrackId id) { landmarksOf(id).drop(); }
 
 /// The last of the frames that leave the window within so many frames, this one included; none while it fills.
 FrameId JointGraph::leavingWithin(int frames) const {
-  const std::ptrdiff_t leaving = std::ssize(frames_) - window_frames_ + frames - 1;
+  const std::ptrdiff_t leaving = std::min(std::ssize(frames_) - window_frames_ + frames - 1, std::ssize(frames_));
   return window_frames_ > 0 && leaving > 0 ? std::next(frames_.begin(), leaving - 1)->first : FrameId{};
 }
 
 void JointGraph::retiring(FrameId oldest) {
   cameras_.forgetStart();
   shake_.forget(oldest);
-  bool changed = at_rest_.retire(oldest, frames_);
-  for (const auto& [id, track] : tracks_) changed |= landmarksOf(id).retire(oldest, posesOf(track));
-  if (changed) dropTroubled(solver_.update());
+  at_rest_.bundles().retire(oldest);
+  for (auto& [id, landmarks] : landmarks_) landmarks.retire(oldest);
 }
 
 std::string JointGraph::nameOf(VariableId v) const {

@@ -1,6 +1,7 @@
 #include "backend/joint/landmark_bundles.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -35,20 +36,14 @@ void LandmarkBundles::renew(std::int64_t frame_count, const PoseVariable& pose_v
   std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
   const auto leaves = [&](const LandmarkTrack& track) { return track.views.front().frame <= leaving; };
   if (frame_count % params_.closing_frames == 0 || std::ranges::any_of(ended_, leaves)) closeEnded(pose_variable);
-  const std::vector<LandmarkTrack*> tracks = newestTracks();
+  std::vector<LandmarkTrack*> tracks = points_.current();
+  std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
   if (tracks.empty()) return;
   const Gathered gathered = gather(tracks, pose_variable);
   newest_ = addBundle(gathered, params_.newest);
   if (!newest_) return;
   neighbors_per_view_ = neighborsPerView(camera_, gathered.landmarks);
   shake_.observe(newest_->frames, newest_->shakes);
-}
-
-/// The tracks that go on, and those that ended since the last lasting factor.
-std::vector<LandmarkTrack*> LandmarkBundles::newestTracks() {
-  std::vector<LandmarkTrack*> tracks = points_.current();
-  std::ranges::copy(pointersTo(ended_), std::back_inserter(tracks));
-  return tracks;
 }
 
 /// Makes lasting factors of the tracks that ended.
@@ -118,19 +113,9 @@ void LandmarkBundles::relinearize(const PoseVariable& pose_variable) {
   }
 }
 
-bool LandmarkBundles::retire(FrameId oldest, const PoseVariable& pose_variable) {
-  const bool leaves = newest_ && newest_->frames.front() <= oldest;
-  if (leaves) {
-    solver_.removeFactor(newest_->factor);
-    points_.endFrom(oldest);
-    std::ranges::move(points_.takeEnded(), std::back_inserter(ended_));
-    closeEnded(pose_variable);
-    newest_.reset();
-    if (const auto tracks = newestTracks(); !tracks.empty())
-      newest_ = addBundle(gather(tracks, pose_variable), params_.newest);
-  }
+void LandmarkBundles::retire(FrameId oldest) {
+  assert(!newest_ || newest_->frames.front() > oldest);
   std::erase_if(closed_, [oldest](const Closed& closed) { return closed.first <= oldest; });
-  return leaves;
 }
 
 void LandmarkBundles::drop() {

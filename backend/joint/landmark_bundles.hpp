@@ -39,9 +39,9 @@ class LandmarkBundles {
   void relinearize(const PoseVariable& pose_variable);
   /// Fixes the factors over ended tracks.
   void fix() { closed_.clear(); }
-  /// Prepares for frames up to this one to leave the graph: their tracks end, as lasting factors keep what is said of
-  /// the frames that stay. True when there were such tracks: update the solver before the frames leave.
-  bool retire(FrameId oldest, const PoseVariable& pose_variable);
+  /// Forgets what frames up to this one told, as they leave the graph. `renew` was told before, and its lasting factors
+  /// keep what they say of the frames that stay.
+  void retire(FrameId oldest);
   /// Forgets the body's poses, which have gone, and the factors with them.
   void drop();
 
@@ -63,7 +63,6 @@ class LandmarkBundles {
     LandmarkViews landmarks;
     std::vector<LandmarkTrack*> tracks;
   };
-  std::vector<LandmarkTrack*> newestTracks();
   void closeEnded(const PoseVariable& pose_variable);
   Gathered gather(std::span<LandmarkTrack* const> tracks, const PoseVariable& pose_variable) const;
   std::optional<Bundle> addBundle(const Gathered& gathered, IncrementalSolver::Lifetime lifetime);

@@ -56,19 +56,9 @@ bool LandmarksAtRest::eliminateAligned(std::int64_t frame_count, const Frames& f
   return true;
 }
 
-bool LandmarksAtRest::retire(FrameId oldest, const Frames& frames) {
-  if (!bundles_.retire(oldest, camerasOf(frames))) return false;
-  removeAlignments();  // their views are in the bundle that was made anew
-  return true;
-}
-
-void LandmarksAtRest::removeAlignments() {
+void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames, FrameId leaving) {
   for (const FactorId alignment : alignments_) solver_.removeFactor(alignment);
   alignments_.clear();
-}
-
-void LandmarksAtRest::eliminate(std::int64_t frame_count, const Frames& frames, FrameId leaving) {
-  removeAlignments();
   bundles_.renew(frame_count, camerasOf(frames), leaving);
 }
 

@@ -34,12 +34,9 @@ class LandmarksAtRest {
   /// Eliminates the landmarks to which the newest cameras are aligned. Returns false when there is nothing to do.
   bool eliminateAligned(std::int64_t frame_count, const Frames& frames);
   void relinearize(const Frames& frames);
-  /// Prepares for frames up to this one to leave the graph. True when the solver must be updated before they do.
-  bool retire(FrameId oldest, const Frames& frames);
 
  private:
   void eliminate(std::int64_t frame_count, const Frames& frames, FrameId leaving = {});
-  void removeAlignments();
   std::optional<FactorId> alignNewest(const Frames& frames);
   std::vector<ViewOfKnown> knownViews(std::span<LandmarkTrack* const> tracks, const FrameIndex& index,
                                       std::span<const SE3> T_cam_world, FrameId before);

@@ -54,7 +54,7 @@ TEST(BodyPoints, EndsTracksFromAFrameThatLeaves) {
   const auto ended = points.takeEnded();
   ASSERT_EQ(ended.size(), 1U);
   EXPECT_EQ(ended[0].point, PointId{7});
-  EXPECT_EQ(ended[0].views.size(), 4U) << "the newest begins another track";
+  EXPECT_EQ(ended[0].views.size(), 4U) << "that of frame 3 goes on";
   points.observe({5}, std::vector{point(7), point(8, 300)});
   std::set<std::pair<std::int64_t, std::size_t>> views;
   for (const LandmarkTrack* track : points.current()) views.insert({track->point.value, track->views.size()});

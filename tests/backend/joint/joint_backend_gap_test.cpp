@@ -63,5 +63,21 @@ TEST(JointBackend, LandmarksOfObjectsLastOverFramesWithoutImages) {
   EXPECT_LT(kept_m, 0.7 * renewed_m);
 }
 
+/// The frames before the gap leave the window while it is dark, and what linked the later ones to them stays.
+TEST(JointBackend, DarkFramesThatFillAShortWindowLoseNothing) {
+  constexpr int kWindow_frames = 8, kDark = 20, kLight = 30;
+  PointDrive drive(3, kStreet);
+  JointBackend backend(JointParams{}, kPointRig, {.window_frames = kWindow_frames});
+  for (int i = 0; i < drive.options().frames; ++i) {
+    FrameMeasurements m = *drive.measure(i);
+    if (i >= kDark && i < kLight) {
+      m.head.status = FrameStatus::kLost;
+      m.at_rest.clear(), m.undecided.clear(), m.objects.clear();
+    }
+    const auto estimates = backend(std::make_shared<const FrameMeasurements>(std::move(m)));
+    EXPECT_TRUE(estimates->problems.empty()) << "frame " << i << ": " << estimates->problems.front();
+  }
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -50,7 +50,7 @@ class FollowedBody {
       if (const auto uvd_px = test::look(truthIn(frame) * points_[i], noise_))
         seen.push_back({{i}, uvd_px->cast<float>(), test::kObservationSigma_px.cast<float>()});
     bundles_.points().observe({frame}, seen);
-    bundles_.renew(frame, poseVariable());
+    bundles_.renew(frame, poseVariable(), {frame - window_frames_});
     EXPECT_TRUE(solver_.update().problems.empty()) << frame;
     while (static_cast<int>(poses_.size()) > window_frames_) retireOldest();
   }
@@ -72,7 +72,7 @@ class FollowedBody {
   }
   void retireOldest() {
     const auto [frame, pose] = *poses_.begin();
-    if (bundles_.retire(frame, poseVariable())) solver_.update();
+    bundles_.retire(frame);
     solver_.retire(std::vector{pose});
     poses_.erase(frame);
   }
