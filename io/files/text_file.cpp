@@ -96,7 +96,7 @@ void FieldReader::skipBlanks() {
 }
 
 std::string_view FieldReader::word(std::string_view what) {
-  if (atEnd()) fail("ends before " + std::string(what));
+  if (atEnd()) fail("ends before " + printable(what));
   const auto end = separator_ == ' ' ? rest_.find_first_of(" \t") : rest_.find(separator_);
   const std::string_view field = rest_.substr(0, end);
   owes_field_ = separator_ != ' ' && end != std::string_view::npos;

@@ -84,6 +84,8 @@ TEST(FieldReader, RefusesNumbersWhoseProductsWouldNotBeFinite) {
 TEST(FieldReader, ShowsNoByteThatATerminalTakesForACommandAndNoLongText) {
   EXPECT_THAT(errorOf("1\x1b[2J\xff", kNumber), HasSubstr("'1?[2J?' is not a number"));
   EXPECT_THAT(errorOf("\a7", kInteger), HasSubstr("'?7' is not a whole number"));
+  const auto read_column = [](FieldReader& fields) { return fields.number("speed\xff"); };  // a name from a header
+  EXPECT_THAT(errorOf("", read_column), HasSubstr("ends before speed?"));
   std::string long_text(100000, '7');
   long_text.back() = 'x';
   EXPECT_THAT(errorOf(long_text, kNumber), HasSubstr("'" + std::string(40, '7') + "...' is not"));
