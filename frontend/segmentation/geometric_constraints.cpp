@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "core/elementary.hpp"
+#include "frontend/motion/shared_velocity_error.hpp"
 
 namespace motorcade {
 namespace {
@@ -14,6 +17,7 @@ constexpr double kDepthSigmas = 3.0;         // of depth and of position along t
 constexpr int kMinObservations = 3;          // of a track: between two neighboring frames lines are short
 constexpr double kMaxEpipolarSigmas = 4;     // one of 15,000 points at rest exceeds it by noise
 constexpr double kMaxFlowBound_px = 2;       // beyond the noise: room for errors of the camera's motion
+constexpr double kMaxRestChi2 = 16.3;        // of a velocity, 3 degrees of freedom: 99.9 %
 
 /// Image position now of the point of `uvd_then_px`, with another disparity.
 std::optional<Eigen::Vector2d> transfer(const StereoCamera& camera, const Eigen::Vector3d& uvd_then_px,
@@ -51,6 +55,12 @@ bool violatesGeometry(const StereoCamera& camera, const PointTrack& track, const
   if (!relation) return false;
   const auto residual = geometricResidual(camera, track.sinceThen(track.oldest()), relation->T_then_now.inverse());
   return residual && (residual->epipolar_sigmas > kMaxEpipolarSigmas || residual->flow_bound_px > kMaxFlowBound_px);
+}
+
+bool movesSurely(const StereoCamera& camera, const SceneFlow& flow, double camera_speed_mps) {
+  const Eigen::Matrix3d C =
+      flow.covariance.bottomRightCorner<3, 3>() + sharedVelocityCovariance(camera, flow.p_cam, camera_speed_mps);
+  return flow.velocity_mps.dot(C.inverse() * flow.velocity_mps) > kMaxRestChi2;
 }
 
 }  // namespace motorcade

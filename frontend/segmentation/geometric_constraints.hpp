@@ -4,6 +4,7 @@
 
 #include "core/se3.hpp"
 #include "core/stereo_camera.hpp"
+#include "frontend/messages.hpp"
 #include "frontend/motion/camera_trail.hpp"
 #include "frontend/motion/point_track.hpp"
 
@@ -28,5 +29,10 @@ std::optional<GeometricResidual> geometricResidual(const StereoCamera& camera, c
 /// True when the newest observation of a track breaks the epipolar constraint or the flow-vector bound of a point at
 /// rest; false for tracks that are too short to tell.
 bool violatesGeometry(const StereoCamera& camera, const PointTrack& track, const CameraTrail& trail);
+
+/// True when the velocity of a point differs from rest by more than its own noise and the errors that it shares with
+/// the points around it explain. Such a point proves motion along the epipolar line, too, where the bound above is
+/// wide.
+bool movesSurely(const StereoCamera& camera, const SceneFlow& flow, double camera_speed_mps);
 
 }  // namespace motorcade

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "frontend/geometry/delaunay.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
+#include "frontend/segmentation/geometric_constraints.hpp"
 
 namespace motorcade {
 namespace {
@@ -126,24 +128,34 @@ bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) c
 std::vector<MotionComponent> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
                                                          const std::vector<bool>& violates_geometry,
                                                          const GroundPlane& ground, double camera_speed_mps) const {
+  const Scene scene{points, ground, camera_speed_mps};
   std::vector<int> vertices;
-  std::vector<Eigen::Vector2d> pixels;
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    if (!isVertex(points[i])) continue;
-    vertices.push_back(i);
-    pixels.emplace_back(points[i].uvd_px.head<2>());
-  }
-  const auto together = [&](int a, int b) {
-    const int i = vertices[a], j = vertices[b];
-    if (violates_geometry[i] != violates_geometry[j]) return false;
-    return belongTogether(points[i], points[j]);
+  for (int i = 0; i < static_cast<int>(points.size()); ++i)
+    if (isVertex(points[i])) vertices.push_back(i);
+  std::vector<MotionComponent> components = split(scene, vertices, [&](int i, int j) {
+    return violates_geometry[i] == violates_geometry[j] && belongTogether(points[i], points[j]);
+  });
+  const auto settled = [&](int i) {
+    return points[i].label != PointLabel::kStatic || !movesSurely(camera_, *points[i].flow, camera_speed_mps);
   };
+  std::erase_if(vertices, settled);
+  std::ranges::move(split(scene, vertices, [&](int i, int j) { return belongTogether(points[i], points[j]); }),
+                    std::back_inserter(components));
+  return components;
+}
+
+/// Labels the components of these vertices, and returns those that are not static.
+std::vector<MotionComponent> MotionSegmenter::split(const Scene& scene, std::span<const int> vertices,
+                                                    const std::function<bool(int, int)>& belong_together) const {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const int i : vertices) pixels.emplace_back(scene.points[i].uvd_px.head<2>());
   std::vector<MotionComponent> components;
+  const auto together = [&](int a, int b) { return belong_together(vertices[a], vertices[b]); };
   for (auto& members : cutDelaunayComponents(pixels, together)) {
     for (int& i : members) i = vertices[i];
-    MotionComponent component = describe(std::move(members), points, camera_speed_mps);
-    component.label = decide(component, points, ground);
-    for (const int i : component.points) points[i].label = component.label;
+    MotionComponent component = describe(std::move(members), scene.points, scene.camera_speed_mps);
+    component.label = decide(component, scene.points, scene.ground);
+    for (const int i : component.points) scene.points[i].label = component.label;
     if (component.label != PointLabel::kStatic) components.push_back(std::move(component));
   }
   return components;

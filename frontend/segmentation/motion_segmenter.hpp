@@ -20,7 +20,8 @@ std::vector<std::vector<int>> cutDelaunayComponents(std::span<const Eigen::Vecto
 
 /// Splits the scene into moving, static and unknown parts: connected components of the Delaunay graph over the image
 /// points. An edge is cut where the scene flow of its ends differs by more than their uncertainty allows, or where they
-/// are too far apart to be one vehicle. Stateless.
+/// are too far apart to be one vehicle. Points that surely move are split once more where they fell to a static part: a
+/// walker's velocity differs from that of the house behind by little more than the tolerance. Stateless.
 class MotionSegmenter {
  public:
   struct Params {
@@ -46,6 +47,13 @@ class MotionSegmenter {
   bool isVertex(const ScenePoint& point) const;
 
  private:
+  struct Scene {
+    std::vector<ScenePoint>& points;
+    const GroundPlane& ground;
+    double camera_speed_mps;
+  };
+  std::vector<MotionComponent> split(const Scene& scene, std::span<const int> vertices,
+                                     const std::function<bool(int, int)>& belong_together) const;
   MotionComponent describe(std::vector<int> members, const std::vector<ScenePoint>& points,
                            double camera_speed_mps) const;
   PointLabel decide(const MotionComponent& component, const std::vector<ScenePoint>& points,

@@ -100,7 +100,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   addPoints(of_world, measured.camera.inliers, motion->points);
   if (frame.inputs.instances) addInstances(*frame.inputs.instances, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
-  motion->ground = findGround(violates_geometry, head.frame, motion->points);
+  motion->ground = findGround(violates_geometry, *motion);
   motion->components = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);
 
   tracks_.setLabels(motion->points);
@@ -257,18 +257,20 @@ std::vector<bool> SceneFlowSegmentation::testGeometry() const {
   return violates;
 }
 
-/// Finds the road under the points that do not violate the geometry of a static world, and labels those on it.
-GroundPlane SceneFlowSegmentation::findGround(const std::vector<bool>& violates_geometry, FrameId frame,
-                                              std::vector<ScenePoint>& points) {
+/// Finds the road under the points that may be at rest, and labels those on it. Feet and wheels are near the plane,
+/// too.
+GroundPlane SceneFlowSegmentation::findGround(const std::vector<bool>& violates_geometry, SceneMotion& motion) {
+  std::vector<ScenePoint>& points = motion.points;
   std::vector<GroundCandidate> candidates;
   std::vector<std::size_t> of_candidate;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (violates_geometry[i]) continue;
+    const auto& flow = points[i].flow;
+    if (violates_geometry[i] || (flow && movesSurely(camera_, *flow, motion.camera_speed_mps))) continue;
     const Eigen::Vector3d p_cam = camera_.triangulate(points[i].uvd_px);
     candidates.push_back({p_cam, std::abs(p_cam.y()) * points[i].sigma_px.z() / points[i].uvd_px.z()});
     of_candidate.push_back(i);
   }
-  GroundPlane ground = ground_plane_(candidates, static_cast<std::uint64_t>(frame.value));
+  GroundPlane ground = ground_plane_(candidates, static_cast<std::uint64_t>(motion.head.frame.value));
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (ground_plane_.isOnGround(candidates[k])) points[of_candidate[k]].label = PointLabel::kGround;
   return ground;

@@ -57,7 +57,7 @@ class SceneFlowSegmentation {
                                         const SE3& T_seen_now) const;
   void addPoints(const Observations& of_world, const std::vector<bool>& inliers, std::vector<ScenePoint>& points) const;
   std::vector<bool> testGeometry() const;
-  GroundPlane findGround(const std::vector<bool>& violates_geometry, FrameId frame, std::vector<ScenePoint>& points);
+  GroundPlane findGround(const std::vector<bool>& violates_geometry, SceneMotion& motion);
   void calibrateDisparity();
 
   StereoCamera camera_;

@@ -77,7 +77,7 @@ class TwoSurfaces {
     Noise noise(5);
     std::vector<Eigen::Vector2d> points;
     for (int i = 0; i < kWallPoints; ++i) points.emplace_back(noise.uniform(-1, 14), noise.uniform(-4, 4));
-    for (int i = 0; i < kCarPoints; ++i) points.emplace_back(noise.uniform(-1.4, -0.8), noise.uniform(-0.4, 0.2));
+    for (int i = 0; i < kCarPoints; ++i) points.emplace_back(noise.uniform(-1.4, -0.8), noise.uniform(-0.4, 0.3));
     return points;
   }
 

@@ -1,7 +1,10 @@
 #include "frontend/segmentation/geometric_constraints.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "frontend/motion/shared_velocity_error.hpp"
+#include "tests/support/noise.hpp"
 #include "tests/support/stereo_views.hpp"
 
 namespace motorcade {
@@ -88,6 +91,40 @@ TEST(GeometricConstraints, ATrackOlderThanTheTrailIsNotJudged) {
   for (int k = 0; k < 3; ++k) track.add({k, {600, 180, 20}, kSigma_px.cast<float>()});
   for (int k = 0; k < 2 * CameraTrail::kCapacity; ++k) trail.add({k * 100'000'000}, SE3{});
   EXPECT_FALSE(violatesGeometry(kRig, track, trail));
+}
+
+/// Scene flow of a point 15 m ahead, known to 0.05 m/s across the view and to 0.5 m/s along it.
+SceneFlow flowAhead(const Eigen::Vector3d& velocity_mps) {
+  SceneFlow flow{.p_cam = {0, 1, 15}, .velocity_mps = velocity_mps, .covariance = Matrix6d::Identity()};
+  flow.covariance.bottomRightCorner<3, 3>() = Eigen::Vector3d(0.05, 0.05, 0.5).cwiseAbs2().asDiagonal();
+  return flow;
+}
+
+TEST(SureMotion, IsBeyondTheNoiseOfItsDirection) {
+  constexpr double kWalk_mps = 1.4, kCamera_mps = 3;
+  EXPECT_TRUE(movesSurely(kRig, flowAhead({kWalk_mps, 0, 0}), kCamera_mps));
+  EXPECT_FALSE(movesSurely(kRig, flowAhead({0, 0, kWalk_mps}), kCamera_mps));
+  EXPECT_TRUE(movesSurely(kRig, flowAhead({0, 0, 2 * kWalk_mps}), kCamera_mps));
+}
+
+TEST(SureMotion, IsBeyondTheErrorsThatPointsShareAtSpeed) {
+  const SceneFlow flow = flowAhead({0.6, 0, 0});
+  EXPECT_TRUE(movesSurely(kRig, flow, 3));
+  EXPECT_FALSE(movesSurely(kRig, flow, 13));
+}
+
+TEST(SureMotion, OnePointAtRestOfAThousandSeemsToMove) {
+  constexpr double kCamera_mps = 10;
+  const SceneFlow at_rest = flowAhead({0, 0, 0});
+  const Eigen::Matrix3d C =
+      at_rest.covariance.bottomRightCorner<3, 3>() + sharedVelocityCovariance(kRig, at_rest.p_cam, kCamera_mps);
+  const Eigen::Matrix3d root = C.llt().matrixL();
+  test::Noise noise(1);
+  int moving = 0;
+  for (int i = 0; i < 20'000; ++i)
+    moving += movesSurely(kRig, flowAhead(root * noise.gaussian(Eigen::Vector3d(1, 1, 1))), kCamera_mps);
+  EXPECT_GE(moving, 8);  // of 20 that are expected
+  EXPECT_LE(moving, 34);
 }
 
 }  // namespace

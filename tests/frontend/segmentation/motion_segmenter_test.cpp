@@ -121,8 +121,8 @@ struct Street {
     }
     return bodies++;
   }
-  std::vector<MotionComponent> components() {
-    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}, kSpeed_mps);
+  std::vector<MotionComponent> components(double camera_speed_mps = kSpeed_mps) {
+    return MotionSegmenter({}, kRig)(points, std::vector<bool>(points.size(), false), GroundPlane{}, camera_speed_mps);
   }
   /// Share of a body's points with a label.
   double share(int of_body, PointLabel label) const {
@@ -167,6 +167,18 @@ TEST(MotionSegmenter, NeighborsOfDifferentSpeedAParkedCarAndTheWallAreToldApart)
       EXPECT_NEAR(s.velocity_mps.z(), owner == fast ? 12 : 6, 0.4);  // 0.3 m/s over the root of 15 points, five sigmas
     }
     EXPECT_EQ(moving, 2) << "seed " << seed;
+  }
+}
+
+/// Each of the walker's points is joined to the wall by the tolerance, and differs from rest by more than the noise.
+TEST(MotionSegmenter, AWalkerBeforeAWallOfAlmostItsVelocityMoves) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Street street(seed);
+    const int walker = street.add({-3, 0.7, 14}, {0.25, 0.8, 0.2}, {0, 0, 1.5}, 12, 0.25),
+              wall = street.add({-3, 0, 14.8}, {3, 1.5, 0.1}, {0, 0, 0}, 60, 0.25);
+    street.components(3);
+    EXPECT_GT(street.share(walker, PointLabel::kMoving), 0.6) << "seed " << seed;
+    EXPECT_EQ(street.share(wall, PointLabel::kMoving), 0) << "seed " << seed;
   }
 }
 

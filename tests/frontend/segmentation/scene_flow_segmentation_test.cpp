@@ -117,6 +117,26 @@ TEST(SceneFlowSegmentation, PointsThatAreFixedToTheCameraTakePartInNothing) {
   }
 }
 
+/// A surface that reaches down to the road walks ahead, or stands. After three steps all of its points tell, but not
+/// yet by the bounds of the flow vector.
+TEST(SceneFlowSegmentation, FeetThatWalkAreNoRoad) {
+  constexpr int kLast = 3;
+  SceneFlowSegmentation::Params params;
+  params.ground_plane.min_height_m = 0.1;
+  params.ground_plane.initial_height_m = 0.3;
+  for (const double step_m : {0.0, 0.15}) {
+    const test::TwoSurfaces scene(step_m, 7);
+    SceneFlowSegmentation estimate(params, test::kSmallRig);
+    for (int frame = 0; frame <= kLast; ++frame) {
+      const auto stereo = scene.stereo(frame);
+      const auto motion = estimate(stereo, scene.flow(*stereo, frame));
+      const auto is_road = [&](const ScenePoint& p) { return scene.onCar(p.point) && p.label == PointLabel::kGround; };
+      const bool told = frame == kLast && step_m > 0;
+      EXPECT_EQ(std::ranges::any_of(motion->points, is_road), !told) << "step " << step_m << " m, frame " << frame;
+    }
+  }
+}
+
 TEST(SceneFlowSegmentation, PointsOnIgnoredPixelsTakePartInNothing) {
   const test::TwoSurfaces scene(0.5);
   PixelMask ignored(test::kSmallRig.width_px, test::kSmallRig.height_px);
