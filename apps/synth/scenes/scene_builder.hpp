@@ -29,6 +29,11 @@ class SceneBuilder {
 
   void setRoads(std::vector<Road> roads) { scene.roads = RoadNetwork(std::move(roads)); }
   void setEgo(Trajectory trajectory) { scene.ego.trajectory = std::move(trajectory); }
+  using Plant = Model (*)(float size_m, std::uint32_t seed);
+  /// A tree or a bush: the seed is drawn first, then the size.
+  Model drawPlant(Plant make, float from_m, float to_m);
+  /// The seed is drawn first, then the height.
+  Model drawHedge(float length_m, float from_m, float to_m);
   void addMover(VehicleKind kind, Trajectory trajectory, Finish finish = Finish::kAny);
   void addMover(Model model, Trajectory trajectory);
   /// Two objects: the truck drives as given, its trailer follows on the same path.
