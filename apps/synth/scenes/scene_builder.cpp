@@ -179,8 +179,8 @@ void SceneBuilder::dress(int road, const Dressing& dressing) {
   }
 }
 
-PathPtr makePath(double x, double y, double heading_rad, std::vector<Path::Piece> pieces, bool closed) {
-  return std::make_shared<const Path>(Eigen::Vector2d(x, y), heading_rad, std::move(pieces), closed);
+PathPtr makePath(double x, double y, double heading_rad, const std::vector<Path::Piece>& pieces, bool closed) {
+  return std::make_shared<const Path>(Eigen::Vector2d(x, y), heading_rad, pieces, closed);
 }
 
 PathPtr straight(double from_m, double to_m) { return makePath(from_m, 0, 0, {{to_m - from_m, 0}}); }

@@ -69,7 +69,7 @@ Scene makeScene(const std::string& name, std::uint32_t seed);
 using PathPtr = std::shared_ptr<const Path>;
 constexpr double kLane_m = 3.5;
 
-PathPtr makePath(double x, double y, double heading_rad, std::vector<Path::Piece> pieces, bool closed = false);
+PathPtr makePath(double x, double y, double heading_rad, const std::vector<Path::Piece>& pieces, bool closed = false);
 PathPtr straight(double from_m, double to_m);
 /// Arc length on a path that starts `start_m` before the ego car's start.
 Trajectory drive(const PathPtr& path, double start_m, Profile speed_mps, Profile left_m, bool backwards = false);
