@@ -112,6 +112,14 @@ TEST(SynthPixels, AndTheTruthOfAFirstFrameStayWhatTheyAre) {
   EXPECT_THAT(sums, testing::ContainerEq(kFirstFrames));
 }
 
+/// The woods on the horizon of `highway` hang on the last bit of an angle, and two versions of the C library differ
+/// there.
+TEST(SynthPixels, DoNotDependOnTheCLibrary) {
+  Checksum sum;
+  sum.addAll(pixels(render(FrameScene(makeScene("highway", 1), 0, true), kittiCamera(), StereoSide::kLeft, {}).image));
+  EXPECT_EQ(sum.value(), 0xa22fa8ac077e8e4aU);
+}
+
 /// Seeds 1 to 4: what is seldom drawn is drawn in one of them.
 const Checksums kThings{
     {"bonnet", 0x2f04ae16eb31e94cU},      {"brick", 0xfef657b7b1953d50U},     {"circuit", 0xc316770c5418c6d1U},
