@@ -108,7 +108,10 @@ Camera rigOf(const Camera& camera) {
 TEST(TrackerMemory, TheCounterSeesTheHeap) {
   heap_calls = 0;
   counting = true;
-  { const std::vector<double> vector(100, 1.0); }
+  {
+    const std::vector<double> vector(100, 1.0);
+    seeBlock(vector.data());
+  }
   counting = false;
   EXPECT_EQ(heap_calls, 2);
 }

@@ -199,8 +199,9 @@ Model makeUpperBody(const Body& b, Random& random) {
     });
   }
   if (random.chance(0.4F)) {  // a rucksack
+    const std::uint32_t pattern = random.bits();
     trunk.add(Material::kCloth, {-0.145F * h, -0.075F * h, 0.06F * h}, {-0.055F * h, 0.075F * h, 0.275F * h},
-              random.uniform(0.05F, 0.5F), random.bits());
+              random.uniform(0.05F, 0.5F), pattern);
     trunk.cutLast({-1, 0, 0.6F}, {-0.13F * h, 0, 0.25F * h});
   }
   if (random.chance(0.35F))  // a coat

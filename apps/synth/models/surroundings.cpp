@@ -21,9 +21,11 @@ Model makeBuilding(float length_m, float depth_m, float height_m, std::uint32_t 
   for (float story = 4; story < height_m - 2 && random.chance(0.8F); story += 3.1F)  // balconies
     for (float at = -x + 2.5F; at < x - 2.5F; at += 4.5F)
       for (const float side : {-1.0F, 1.0F})
-        if (random.chance(0.5F))
+        if (random.chance(0.5F)) {
+          const std::uint32_t grain = random.bits();
           m.add(Material::kWood, {at, side * y, story}, {at + 2.2F, side * (y + 0.9F), story + 0.95F},
-                random.uniform(0.2F, 0.6F), random.bits());
+                random.uniform(0.2F, 0.6F), grain);
+        }
   return m;
 }
 
@@ -38,8 +40,8 @@ Model makeTree(float height_m, std::uint32_t seed) {
     const float angle = 2 * std::numbers::pi_v<float> * (static_cast<float>(i) + random.uniform(0, 0.6F)) / blobs;
     const float out = i == 0 ? 0 : random.uniform(0.35F, 0.7F) * crown, size = crown * random.uniform(0.36F, 0.58F);
     const Vec3 center{out * std::cos(angle), out * std::sin(angle), height_m - crown * random.uniform(0.45F, 1.05F)};
-    m.addEllipsoid(Material::kLeaves, center, {size, size, 0.8F * size}, tone * random.uniform(0.8F, 1.3F),
-                   random.bits());
+    const std::uint32_t leaves = random.bits();
+    m.addEllipsoid(Material::kLeaves, center, {size, size, 0.8F * size}, tone * random.uniform(0.8F, 1.3F), leaves);
   }
   return m;
 }
@@ -49,8 +51,9 @@ Model makeBush(float length_m, std::uint32_t seed) {
   Random random(seed);
   for (float x = -0.5F * length_m; x < 0.5F * length_m; x += 0.9F) {
     const float r = random.uniform(0.6F, 1.1F);
-    m.addEllipsoid(Material::kLeaves, {x, random.uniform(-0.3F, 0.3F), 0.7F * r}, {r, 0.8F * r, r},
-                   random.uniform(0.09F, 0.24F), random.bits());
+    const std::uint32_t leaves = random.bits();
+    const float tone = random.uniform(0.09F, 0.24F), y = random.uniform(-0.3F, 0.3F);
+    m.addEllipsoid(Material::kLeaves, {x, y, 0.7F * r}, {r, 0.8F * r, r}, tone, leaves);
   }
   return m;
 }
@@ -93,9 +96,9 @@ Model makeTrafficSign(std::uint32_t seed) {
   Model m;
   Random random(seed);
   m.addCylinder(Material::kMetal, 2, {-0.04F, -0.04F, 0}, {0.04F, 0.04F, 2.9F}, 0.4F, seed);
-  const float width = random.uniform(0.3F, 0.55F);
-  m.add(Material::kSign, {-0.07F, -width, 2.1F}, {-0.045F, width, 2.1F + 2 * random.uniform(0.25F, 0.5F)},
-        random.chance(0.6F) ? 0.75F : 0.12F, seed);
+  const float width = random.uniform(0.3F, 0.55F), tone = random.chance(0.6F) ? 0.75F : 0.12F;
+  const float top = 2.1F + 2 * random.uniform(0.25F, 0.5F);
+  m.add(Material::kSign, {-0.07F, -width, 2.1F}, {-0.045F, width, top}, tone, seed);
   return m;
 }
 
@@ -257,8 +260,8 @@ Model makeSwayingTree(float height_m, std::uint32_t seed) {
     const float up = i == 0 ? 0.3F : random.uniform(0, 1);  // the first one hides the trunk's end
     const Vec3 rest{out * std::cos(angle), out * std::sin(angle), height_m * lerp(0.5F, 0.86F, up)};
     Model branch;
-    branch.addEllipsoid(Material::kFoliage, {}, {size, size, 0.75F * size}, tone * random.uniform(0.8F, 1.3F),
-                        random.bits());
+    const std::uint32_t leaves = random.bits();
+    branch.addEllipsoid(Material::kFoliage, {}, {size, size, 0.75F * size}, tone * random.uniform(0.8F, 1.3F), leaves);
     const Wind wind{static_cast<double>(lerp(kLowest_m, kHighest_m, up)), towards_rad, gust_rad,
                     random.uniform(0, 6.28F)};
     m.addLimb(std::move(branch), [wind, rest](double t_s) { return wind.at(t_s, rest); });

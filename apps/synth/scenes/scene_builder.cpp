@@ -17,9 +17,19 @@ double vary(Random& random, double mean, double share) { return mean * (1 + shar
 SceneBuilder::SceneBuilder(std::string name, std::uint32_t seed) : random(mix(seed * 7919U + 13U)) {
   scene.name = std::move(name);
   scene.seed = seed;
-  const float height = random.uniform(0.70F, 0.95F),
-              azimuth = random.uniform(0.5F, 2.6F) * (random.chance(0.5F) ? 1.0F : -1.0F);
+  const float height = random.uniform(0.70F, 0.95F), aside = random.uniform(0.5F, 2.6F);
+  const float azimuth = random.chance(0.5F) ? aside : -aside;
   scene.sun = {std::cos(height) * std::cos(azimuth), std::cos(height) * std::sin(azimuth), std::sin(height)};
+}
+
+Model SceneBuilder::drawPlant(Plant make, float from_m, float to_m) {
+  const std::uint32_t seed = random.bits();
+  return make(random.uniform(from_m, to_m), seed);
+}
+
+Model SceneBuilder::drawHedge(float length_m, float from_m, float to_m) {
+  const std::uint32_t seed = random.bits();
+  return makeHedge(length_m, random.uniform(from_m, to_m), seed);
 }
 
 void SceneBuilder::addMover(VehicleKind kind, Trajectory trajectory, Finish finish) {
@@ -107,15 +117,15 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
       if (setback > 1 && random.chance(0.6F))
         place(makeFence(length - 2, random.bits()), road, middle, side * (half + d.clear_m), 0, 1.5);
     } else if (random.chance(0.5F)) {
-      place(makeHedge(length - 0.5F, random.uniform(1.2F, 2.6F), random.bits()), road, middle,
-            side * (half + d.clear_m + 0.6), 0, 1.5);
-      for (const double back : {5.0, 9.0})
-        place(makeTree(random.uniform(6, 10), random.bits()), road, middle + random.uniform(-4, 4),
-              side * (half + d.clear_m + back), 0, 1.9);
+      place(drawHedge(length - 0.5F, 1.2F, 2.6F), road, middle, side * (half + d.clear_m + 0.6), 0, 1.5);
+      for (const double back : {5.0, 9.0}) {
+        const double along = middle + random.uniform(-4, 4);
+        place(drawPlant(makeTree, 6, 10), road, along, side * (half + d.clear_m + back), 0, 1.9);
+      }
     } else {
       place(makeFence(length - 1, random.bits()), road, middle, side * (half + d.clear_m + 0.3), 0, 1.5);
       place(makeBush(length - 3, random.bits()), road, middle, side * (half + d.clear_m + 2.2), 0, 1.5);
-      place(makeTree(random.uniform(5, 9), random.bits()), road, middle, side * (half + d.clear_m + 4.5), 0, 1.9);
+      place(drawPlant(makeTree, 5, 9), road, middle, side * (half + d.clear_m + 4.5), 0, 1.9);
     }
     s += length;
   }
@@ -124,14 +134,16 @@ void SceneBuilder::placeWall(int road, const Dressing& d, double side) {
 void SceneBuilder::placePavement(int road, const Dressing& d, double side) {
   const double half = scene.roads.roads()[road].half_width_m;
   for (double s = d.from_m + random.uniform(0, 6); s < d.to_m; s += random.uniform(7, 13)) {
-    if (d.trees && random.chance(0.6F))
-      place(makeTree(random.uniform(5.5F, 8.5F), random.bits()), road, s, side * (half + 1.1), random.uniform(0, 6),
-            0.4);
+    if (d.trees && random.chance(0.6F)) {
+      const double turn = random.uniform(0, 6);
+      place(drawPlant(makeTree, 5.5F, 8.5F), road, s, side * (half + 1.1), turn, 0.4);
+    }
     if (random.chance(0.35F))
       place(makeTrafficSign(random.bits()), road, s + 2.5, side * (half + 0.7), side < 0 ? 0.15 : 3.3, 0.3);
-    if (!d.rural && random.chance(0.7F))
-      place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), random.uniform(-0.2F, 0.2F),
-            0.5);
+    if (!d.rural && random.chance(0.7F)) {
+      const double turn = random.uniform(-0.2F, 0.2F);
+      place(makeStreetClutter(random.bits()), road, s + 4, side * (half + d.clear_m - 0.9), turn, 0.5);
+    }
   }
   for (double s = d.from_m + 11; s < d.to_m; s += 28)
     place(makeLampPost(random.bits()), road, s + (side > 0 ? 14 : 0), side * (half + 0.6),
@@ -167,8 +179,8 @@ void SceneBuilder::dress(int road, const Dressing& dressing) {
   }
 }
 
-PathPtr makePath(double x, double y, double heading_rad, std::vector<Path::Piece> pieces, bool closed) {
-  return std::make_shared<const Path>(Eigen::Vector2d(x, y), heading_rad, std::move(pieces), closed);
+PathPtr makePath(double x, double y, double heading_rad, const std::vector<Path::Piece>& pieces, bool closed) {
+  return std::make_shared<const Path>(Eigen::Vector2d(x, y), heading_rad, pieces, closed);
 }
 
 PathPtr straight(double from_m, double to_m) { return makePath(from_m, 0, 0, {{to_m - from_m, 0}}); }

@@ -29,6 +29,11 @@ class SceneBuilder {
 
   void setRoads(std::vector<Road> roads) { scene.roads = RoadNetwork(std::move(roads)); }
   void setEgo(Trajectory trajectory) { scene.ego.trajectory = std::move(trajectory); }
+  using Plant = Model (*)(float size_m, std::uint32_t seed);
+  /// A tree or a bush: the seed is drawn first, then the size.
+  Model drawPlant(Plant make, float from_m, float to_m);
+  /// The seed is drawn first, then the height.
+  Model drawHedge(float length_m, float from_m, float to_m);
   void addMover(VehicleKind kind, Trajectory trajectory, Finish finish = Finish::kAny);
   void addMover(Model model, Trajectory trajectory);
   /// Two objects: the truck drives as given, its trailer follows on the same path.
@@ -64,7 +69,7 @@ Scene makeScene(const std::string& name, std::uint32_t seed);
 using PathPtr = std::shared_ptr<const Path>;
 constexpr double kLane_m = 3.5;
 
-PathPtr makePath(double x, double y, double heading_rad, std::vector<Path::Piece> pieces, bool closed = false);
+PathPtr makePath(double x, double y, double heading_rad, const std::vector<Path::Piece>& pieces, bool closed = false);
 PathPtr straight(double from_m, double to_m);
 /// Arc length on a path that starts `start_m` before the ego car's start.
 Trajectory drive(const PathPtr& path, double start_m, Profile speed_mps, Profile left_m, bool backwards = false);

@@ -19,19 +19,23 @@ void placeGarden(SceneBuilder& b, double along_m, double side, float length_m) {
   if (b.random.chance(0.65F))
     put(makePicketFence(length_m, b.random.bits()), 0, 2.6, turn_rad);
   else
-    put(makeHedge(length_m, b.random.uniform(0.8F, 1.7F), b.random.bits()), 0, 3.0, turn_rad);
-  put(makeBush(b.random.uniform(1, 3), b.random.bits()), b.random.uniform(-3, 3), b.random.uniform(4.5F, 7), 0);
-  put(makeTree(b.random.uniform(4.5F, 7), b.random.bits()), b.random.uniform(-4, 4), b.random.uniform(6, 9), 0);
-  put(makeHedge(length_m + 2, b.random.uniform(1.6F, 2.2F), b.random.bits()), 0, 12, 0);
-  if (b.random.chance(0.6F)) put(makeBuilding(9, 8, b.random.uniform(4, 7), b.random.bits()), 0, 17, 0.5 * turn_rad);
+    put(b.drawHedge(length_m, 0.8F, 1.7F), 0, 3.0, turn_rad);
+  const double bush_out_m = b.random.uniform(4.5F, 7), bush_at_m = b.random.uniform(-3, 3);
+  put(b.drawPlant(makeBush, 1, 3), bush_at_m, bush_out_m, 0);
+  const double tree_out_m = b.random.uniform(6, 9), tree_at_m = b.random.uniform(-4, 4);
+  put(b.drawPlant(makeTree, 4.5F, 7), tree_at_m, tree_out_m, 0);
+  put(b.drawHedge(length_m + 2, 1.6F, 2.2F), 0, 12, 0);
+  if (!b.random.chance(0.6F)) return;
+  const std::uint32_t house = b.random.bits();
+  put(makeBuilding(9, 8, b.random.uniform(4, 7), house), 0, 17, 0.5 * turn_rad);
 }
 
 /// Trees along both curbs whose crowns hang over the parking spaces.
-void plantAvenue(SceneBuilder& b, Model (*tree)(float height_m, std::uint32_t seed), double from_m, double to_m) {
+void plantAvenue(SceneBuilder& b, SceneBuilder::Plant tree, double from_m, double to_m) {
   const double curb_m = b.scene.roads.roads()[0].half_width_m;
   for (const double side : {-1.0, 1.0})
     for (double along_m = from_m + (side > 0 ? 3.5 : 0); along_m < to_m; along_m += b.random.uniform(6, 8.5F))
-      b.place(tree(b.random.uniform(5, 6.2F), b.random.bits()), 0, along_m, side * (curb_m + 0.8), 0, 0.4);
+      b.place(b.drawPlant(tree, 5, 6.2F), 0, along_m, side * (curb_m + 0.8), 0, 0.4);
 }
 
 constexpr double kApproach_m = 48;
@@ -41,8 +45,7 @@ constexpr double kHedge_m = 2.2, kHouse_m = 7.2;  // from the curb to the middle
 void placeCottage(SceneBuilder& b, int road, double along_m, double side, float length_m) {
   const double curb_m = side * b.scene.roads.roads()[road].half_width_m;
   b.place(makeCottage(length_m, 8, b.random.bits()), road, along_m, curb_m + side * kHouse_m, 0, 2.5);
-  b.place(makeHedge(length_m - 0.5F, b.random.uniform(0.7F, 1.1F), b.random.bits()), road, along_m,
-          curb_m + side * kHedge_m, 0, 1.5);
+  b.place(b.drawHedge(length_m - 0.5F, 0.7F, 1.1F), road, along_m, curb_m + side * kHedge_m, 0, 1.5);
 }
 
 /// Cottages in a row with a tree between any two.
@@ -51,8 +54,7 @@ void placeCottages(SceneBuilder& b, int road, double from_m, double to_m, double
   const double curb_m = b.scene.roads.roads()[road].half_width_m;
   for (double along_m = from_m; along_m < to_m; along_m += kPlot_m) {
     placeCottage(b, road, along_m, side, b.random.uniform(9, 11));
-    b.place(makeTree(b.random.uniform(4, 6), b.random.bits()), road, along_m + 0.5 * kPlot_m, side * (curb_m + 4.5), 0,
-            1.9);
+    b.place(b.drawPlant(makeTree, 4, 6), road, along_m + 0.5 * kPlot_m, side * (curb_m + 4.5), 0, 1.9);
     b.place(makeLampPost(b.random.bits()), road, along_m + 0.5 * kPlot_m, side * (curb_m + 0.6),
             side < 0 ? std::numbers::pi : 0, 0.3);
   }

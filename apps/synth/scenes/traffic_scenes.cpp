@@ -39,6 +39,8 @@ void addCyclist(SceneBuilder& b, Trajectory trajectory) {
   b.addMover(makeCyclist(b.random.bits()), std::move(trajectory));
 }
 
+void addBus(SceneBuilder& b, Trajectory trajectory) { b.addMover(makeBus(b.random.bits()), std::move(trajectory)); }
+
 /// Fills the lowest 60 rows or so of KITTI's images. The cameras sit behind the windshield, left and right of its
 /// middle.
 Model makeBonnet(std::uint32_t seed) {
@@ -114,19 +116,23 @@ void buildTraffic(SceneBuilder& b) {
   const double v = vary(b.random, 8.5, 0.03);
   b.setEgo(drive(path, kRoadBehind_m, v, -0.5 * kLane_m));
   const auto ahead = [&](double m) { return kRoadBehind_m + m + jitter(b, 0.5F); };
+  const auto varied = [&](double m, double speed_mps, double share, double left_m, bool backwards) {
+    const double drawn_mps = vary(b.random, speed_mps, share);
+    return drive(path, ahead(m), drawn_mps, left_m, backwards);
+  };
   constexpr double kInner_m = 0.5 * kLane_m, kOuter_m = 1.5 * kLane_m, kEdge_m = 6.5;
   b.addTruckWithTrailer(drive(path, ahead(17), Profile({{0, 6.2}, {6, 5.8}, {11, 6.2}}), -kOuter_m));
   b.addMover(VehicleKind::kCar, drive(path, ahead(15), Profile({{0, v + 0.6}, {6, v - 0.2}, {11, v + 0.6}}), -kInner_m),
              Finish::kSmoothDark);
   b.addMover(VehicleKind::kCar, drive(path, ahead(25), v + 0.3, -kInner_m), Finish::kSmoothLight);
-  addCyclist(b, drive(path, ahead(43), vary(b.random, 5.5, 0.02), -kEdge_m));
-  b.addMover(makeBus(b.random.bits()), drive(path, ahead(47), vary(b.random, 8, 0.03), kInner_m, true));
-  b.addMover(VehicleKind::kCar, drive(path, ahead(74), vary(b.random, 8, 0.03), kInner_m, true), Finish::kDark);
-  b.addMover(VehicleKind::kCar, drive(path, ahead(104), vary(b.random, 8, 0.03), kInner_m, true), Finish::kSmoothLight);
-  b.addTruckWithTrailer(drive(path, ahead(132), vary(b.random, 8, 0.03), kInner_m, true));
-  b.addMover(VehicleKind::kCar, drive(path, ahead(22), vary(b.random, 8, 0.03), kOuter_m, true), Finish::kSmoothDark);
-  addCyclist(b, drive(path, ahead(36), vary(b.random, 5.5, 0.03), kEdge_m, true));
-  b.addMover(VehicleKind::kVan, drive(path, ahead(75), vary(b.random, 7, 0.03), kOuter_m, true), Finish::kSmoothDark);
+  addCyclist(b, varied(43, 5.5, 0.02, -kEdge_m, false));
+  addBus(b, varied(47, 8, 0.03, kInner_m, true));
+  b.addMover(VehicleKind::kCar, varied(74, 8, 0.03, kInner_m, true), Finish::kDark);
+  b.addMover(VehicleKind::kCar, varied(104, 8, 0.03, kInner_m, true), Finish::kSmoothLight);
+  b.addTruckWithTrailer(varied(132, 8, 0.03, kInner_m, true));
+  b.addMover(VehicleKind::kCar, varied(22, 8, 0.03, kOuter_m, true), Finish::kSmoothDark);
+  addCyclist(b, varied(36, 5.5, 0.03, kEdge_m, true));
+  b.addMover(VehicleKind::kVan, varied(75, 7, 0.03, kOuter_m, true), Finish::kSmoothDark);
   // Comes from the side street and waits.
   b.addMover(VehicleKind::kCar, drive(side_street, 120 - 42, Profile({{0, 7}, {1, 7}, {6.5, 0}}), -kInner_m),
              Finish::kSmoothLight);
@@ -152,15 +158,19 @@ void buildRain(SceneBuilder& b) {
   const auto ahead = [&](double m) { return kRoadBehind_m + m + jitter(b, 0.5F); };
   b.addMover(VehicleKind::kCar, drive(path, ahead(14), Profile({{0, v + 0.6}, {5, v - 0.3}, {10, v + 0.5}}), kLeft_m),
              Finish::kDark);
-  b.addMover(makeBus(b.random.bits()), drive(path, ahead(28), v + 0.2, kLeft_m));
-  addCyclist(b, drive(path, ahead(17), vary(b.random, 5, 0.03), -3.05));
-  const auto oncoming = [&](double m) { return drive(path, ahead(m), vary(b.random, 8.5, 0.02), kOncoming_m, true); };
+  addBus(b, drive(path, ahead(28), v + 0.2, kLeft_m));
+  const double cyclist_mps = vary(b.random, 5, 0.03);
+  addCyclist(b, drive(path, ahead(17), cyclist_mps, -3.05));
+  const auto oncoming = [&](double m) {
+    const double drawn_mps = vary(b.random, 8.5, 0.02);
+    return drive(path, ahead(m), drawn_mps, kOncoming_m, true);
+  };
   b.addMover(VehicleKind::kCar, oncoming(30), Finish::kSmoothDark);
   b.addMover(VehicleKind::kCar, oncoming(46), Finish::kSmoothLight);
   b.addMover(VehicleKind::kVan, oncoming(68), Finish::kSmoothDark);
   b.addMover(VehicleKind::kTruck, oncoming(92));
   b.addMover(VehicleKind::kCar, oncoming(116), Finish::kDark);
-  b.addMover(makeBus(b.random.bits()), oncoming(142));
+  addBus(b, oncoming(142));
   const double pavement_m = b.scene.roads.roads()[0].half_width_m + kPavement_m;
   addWalker(b, 24, -pavement_m, 1.5);
   addWalker(b, 40, -pavement_m, 1.8);

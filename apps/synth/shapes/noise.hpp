@@ -63,7 +63,8 @@ inline float gaussian(std::uint32_t hash) {
   return (sum - 2) * 1.7320508F;
 }
 
-/// A sequence of random numbers for building a scene.
+/// A sequence of random numbers for building a scene. An expression draws at most one of them: C++ leaves the order of
+/// a call's arguments to the compiler, and another order of the draws makes another scene.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : seed_(seed) {}

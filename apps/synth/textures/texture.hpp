@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "apps/synth/shapes/primitive.hpp"
+#include "core/elementary.hpp"
 
 namespace motorcade::synth {
 
@@ -14,6 +15,12 @@ struct SurfacePoint {
   float footprint_m = 0;      // width of a pixel on the surface
   float wheel_angle_rad = 0;  // how far the vehicle's wheels have turned
 };
+
+/// Angle of (x, y) from the x axis. The C library's for floats changes with its version: that of glibc 2.41 has other
+/// last bits than that of 2.36.
+inline float angleOf(float y, float x) {
+  return static_cast<float>(arcTangent(static_cast<double>(y), static_cast<double>(x)));
+}
 
 /// Response of a surface to light.
 struct Reflectance {

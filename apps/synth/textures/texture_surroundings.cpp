@@ -251,7 +251,7 @@ Reflectance personReflectance(const SurfacePoint& s) {
 }
 
 float skyRadiance(const Vec3& direction, float pixel_rad, std::uint32_t seed, bool overcast) {
-  const float azimuth = std::atan2(direction.y, direction.x), height = direction.z;
+  const float azimuth = angleOf(direction.y, direction.x), height = direction.z;
   // Hills and woods: ridge lines that close without a seam, since they are noise on the unit circle.
   const float cx = std::cos(azimuth), cy = std::sin(azimuth);
   const float ridge = 0.030F + 0.022F * fractal2(cx * 3, cy * 3, {1, 4, 0.6F}, 0, seed + 1) +

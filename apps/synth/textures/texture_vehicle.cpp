@@ -106,7 +106,7 @@ Reflectance wheel(const SurfacePoint& s) {
   const float radius = 0.5F * (s.part->hi.z - s.part->lo.z), f = s.footprint_m;
   if (std::abs(s.normal.y) < 0.7F) return {0.05F * (1 + 0.5F * pulses(p.y, 0.03F, 0.012F, f)), 0, 0};
   const float r = std::hypot(p.x - c.x, p.z - c.z) / radius, fr = f / radius;
-  const float angle = std::atan2(p.z - c.z, p.x - c.x) + s.wheel_angle_rad;
+  const float angle = angleOf(p.z - c.z, p.x - c.x) + s.wheel_angle_rad;
   const float sector = 2 * std::numbers::pi_v<float> / 5;
   const float turn = angle - sector * std::floor(angle / sector);
   const float spoke = inside(turn, 0.3F, 0.95F, fr / std::fmax(r, 0.1F));

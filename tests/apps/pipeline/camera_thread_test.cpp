@@ -58,6 +58,7 @@ TEST(CameraThread, TheCountersSeeTheHeapAndMutexes) {
   std::mutex mutex;
   counted([&] {
     const std::vector<double> vector(100, 1.0);
+    seeBlock(vector.data());
     const std::scoped_lock lock(mutex);
   });
   EXPECT_EQ(heap_calls, 2);
