@@ -72,7 +72,6 @@ Admission Intake::judge(StereoFrame frame) {
   if (!time) return refuse(frame, step_ns, clock_.refusedFarAhead() ? Admission::kFarAhead : Admission::kOutOfOrder);
   frame.head.stamp = *time;
   frame.inputs.clock_ahead_ns = clock_.ahead_ns();
-  clock_ahead_ns_.store(clock_.ahead_ns(), std::memory_order_relaxed);
   const Admission admission = enter(std::move(frame));
   if (isTaken(admission)) received_.fetch_add(1, std::memory_order_relaxed);
   return admission;
@@ -174,9 +173,9 @@ void Intake::tellOfLost(const Job& job) {
     });
 }
 
-/// Logs a change of the clock. The frame may be one of the few before the first with a corrected time.
+/// Logs a change of the clock with the first frame that has a corrected time.
 void Intake::tellOfClock(const StereoFrame& frame) {
-  const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
+  const std::int64_t ahead_ns = frame.inputs.clock_ahead_ns;
   if (ahead_ns == std::exchange(told_ahead_ns_, ahead_ns)) return;
   tell(log_, LogLevel::kWarning, [&] {
     return "frame " + std::to_string(frame.head.frame.value) +

@@ -78,7 +78,6 @@ class Intake {
   // before.
   std::atomic<bool> entering_{false}, closed_{false};
   std::atomic<std::int64_t> received_{0}, passed_over_{0}, refused_{0}, late_{0};
-  std::atomic<std::int64_t> clock_ahead_ns_{0};
 
   FrameId next_id_{0};                       // producer only
   std::int64_t turns_ = 0;                   // producer only

@@ -15,13 +15,15 @@ def show(result: motorcade.Result) -> None:
 
 
 def feed(drive: motorcade.Recording, tracker: motorcade.Tracker) -> None:  # as a camera's thread would
-    for pair in drive:
-        tracker.push(*pair)
-    tracker.close()
+    try:
+        for pair in drive:
+            tracker.push(*pair)
+    finally:
+        tracker.close()
 
 
 drive = motorcade.Recording(sys.argv[1])
-tracker = motorcade.Tracker(drive.camera, policy="replay")
-threading.Thread(target=feed, args=(drive, tracker)).start()
-for result in tracker:
-    show(result)
+with motorcade.Tracker(drive.camera, policy="replay") as tracker:
+    threading.Thread(target=feed, args=(drive, tracker)).start()
+    for result in tracker:
+        show(result)

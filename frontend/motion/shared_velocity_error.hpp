@@ -13,8 +13,8 @@ namespace motorcade {
 
 /// Covariance of the error that the velocities of all points near `p_cam` share [m^2/s^2, camera axes]. It comes from
 /// the camera's own motion, and from disparities that change by calibration, not by motion, as the camera comes closer.
-/// More points do not make it smaller. Both parts grow with the camera's own speed, as they are shares of its way; the
-/// figures are those of drives in a town.
+/// More points do not make it smaller. Errors of the camera's speed and of disparities grow with that speed, as they
+/// are shares of its way; the error of its turn rate does not. The figures are those of drives in a town.
 inline Eigen::Matrix3d sharedVelocityCovariance(const StereoCamera& camera, const Eigen::Vector3d& p_cam,
                                                 double camera_speed_mps) {
   constexpr double kTownSpeed_mps = 13, kLeastShare = 0.2;  // at rest, the image noise of points at rest remains

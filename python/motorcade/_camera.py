@@ -70,8 +70,9 @@ class Camera:
 
     ``width_px`` and ``height_px`` are those of the images that are pushed. The intrinsics [px] and ``baseline_m`` are
     the rectified pair's; with a rig they are not read. ``ignored`` has a row and a column for each pixel of the left
-    image, rectified; those that are not 0 are of no use. A bonnet is found without it. All covariances hold what errors
-    of the calibration do, which are as large as ``sigmas`` say, typical ones by default.
+    image, rectified; those that are not 0 are of no use. A hood is found without it. Covariances of poses, motions and
+    objects' velocities include the effect of calibration errors as large as ``sigmas`` say, or else the settings, or
+    else typical ones.
     """
 
     width_px: int

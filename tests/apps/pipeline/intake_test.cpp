@@ -2,9 +2,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 #include <thread>
 #include <tuple>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace motorcade {
@@ -90,6 +92,25 @@ TEST_F(LiveIntake, CountsDroppedFramesAlsoWhereThereAreTooManyToNameThem) {
   EXPECT_EQ(admitted(), std::tuple(104'101, 4096, 4096));
   push(5000);
   EXPECT_EQ(admitted(), std::tuple(109'101, 4096, 4999));
+}
+
+/// All frames are pushed before the first one is admitted.
+TEST(ReplayIntake, NamesTheFirstFrameOfAClockThatWasSetBack) {
+  const PipelineParams params;
+  FreeJobs free_jobs(tokens(params));
+  Entrance entrance;
+  std::string log;
+  Intake intake(params, free_jobs, entrance, [&](LogLevel, const std::string& message) { log += message + '\n'; });
+  for (const std::int64_t stamp : {100, 101, 0, 1, 2, 3, 4}) intake.push(stampedFrame(stamp));
+  intake.close();
+  int admitted = 0;
+  for (Job* job = intake.next([] { return false; }); job; job = intake.next([] { return false; })) {
+    ++admitted;
+    job->clear();
+    free_jobs.giveBack(*job);
+  }
+  EXPECT_EQ(admitted, 3);
+  EXPECT_THAT(log, testing::HasSubstr("frame 6: the clock of the camera was set back"));
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_F(Inject, AClockThatIsSetBackCostsAFewFrames) {
     expectFrame(folder, frame, FrameStatus::kRejected, FrameCause::kOutOfOrder);
   expectFrame(folder, 8, FrameStatus::kGood, FrameCause::kAfterGap);
   expectFrame(folder, 9, FrameStatus::kGood, FrameCause::kNone);
-  EXPECT_THAT(contentOf(errors()), HasSubstr("the clock of the camera was set back"));
+  EXPECT_THAT(contentOf(errors()), HasSubstr("frame 8: the clock of the camera was set back"));
 }
 
 TEST_F(Inject, OneTimeFarAheadCostsAFrame) {
