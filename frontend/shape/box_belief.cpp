@@ -46,7 +46,7 @@ struct Posterior {
 };
 
 Posterior posteriorOf(const SizedKind& kind, const FacePrior& prior, const FaceInformation& evidence,
-                      double speed_mps) {
+                      const BodyTraits& traits) {
   FaceInformation both = prior.faces;
   both.add(evidence);
   const Eigen::LLT<Matrix6d> llt(both.H);
@@ -55,9 +55,9 @@ Posterior posteriorOf(const SizedKind& kind, const FacePrior& prior, const FaceI
   posterior.estimate.covariance = inverse(llt);
   posterior.estimate.kind = kind.kind;
   const double misfit = both.c - both.b.dot(posterior.estimate.faces);
-  const double too_fast = std::max(0.0, speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
-  posterior.log_evidence = logarithm(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast +
-                           0.5 * (prior.log_determinant - logDeterminant(llt));
+  const double too_fast = std::max(0.0, traits.speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
+  posterior.log_evidence = logarithm(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast -
+                           0.5 * misfitOf(kind.size, traits) + 0.5 * (prior.log_determinant - logDeterminant(llt));
   return posterior;
 }
 
@@ -97,10 +97,19 @@ ObjectBox BoxEstimate::box() const {
   return box;
 }
 
-BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, ObjectKind known) {
+void BoxEstimate::reach(const Eigen::AlignedBox3d& part) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (part.min()[axis] > part.max()[axis]) continue;
+    usual_least[axis] = std::min(usual_least[axis], part.min()[axis]);
+    usual_most[axis] = std::max(usual_most[axis], part.max()[axis]);
+    possible_least[axis] = std::min(possible_least[axis], usual_least[axis]);
+    possible_most[axis] = std::max(possible_most[axis], usual_most[axis]);
+  }
+}
+
+BoxEstimate estimateBox(const FaceInformation& evidence, const BodyTraits& traits, ObjectKind known) {
   std::array<Posterior, kKinds.size()> posteriors;
-  for (std::size_t i = 0; i < kKinds.size(); ++i)
-    posteriors[i] = posteriorOf(kKinds[i], kPriors[i], evidence, speed_mps);
+  for (std::size_t i = 0; i < kKinds.size(); ++i) posteriors[i] = posteriorOf(kKinds[i], kPriors[i], evidence, traits);
   const auto likeliest = std::ranges::max_element(posteriors, {}, &Posterior::log_evidence);
   const auto rank = [&](const Posterior& p) {
     return std::pair(known == ObjectKind::kUnknown || p.estimate.kind == known, p.log_evidence);

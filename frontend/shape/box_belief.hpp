@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include <Eigen/Geometry>
+
 #include "core/messages.hpp"
 
 namespace motorcade {
@@ -23,6 +25,12 @@ struct FaceInformation {
   FaceInformation shifted(const Eigen::Vector3d& shift) const;
 };
 
+/// What the followed points tell of a body.
+struct BodyTraits {
+  double speed_mps = 0;
+  Eigen::Vector3d least_size_m = Eigen::Vector3d::Zero();  // along its axes, as its points are so far apart
+};
+
 /// The cuboid by the evidence and by what is usual for some kind of object.
 struct BoxEstimate {
   BoxFaces faces = BoxFaces::Zero();
@@ -36,6 +44,8 @@ struct BoxEstimate {
   Eigen::Vector3d usual_least = Eigen::Vector3d::Zero(), usual_most = Eigen::Vector3d::Zero();
   Eigen::Vector3d possible_least = Eigen::Vector3d::Zero(), possible_most = Eigen::Vector3d::Zero();
   ObjectBox box() const;
+  /// Extends the volumes to a part of the body, along the axes on which it has a size.
+  void reach(const Eigen::AlignedBox3d& part);
 };
 
 /// Estimates the cuboid by a mixture of Gaussians. Each kind's usual size closes what the evidence leaves open (hidden
@@ -43,6 +53,7 @@ struct BoxEstimate {
 /// kind, gives the cuboid. Sizes are the published means of KITTI's classes. Standard deviations are those of
 /// independent looks; `believedBox` has those that remain. What is known to walk or ride fills no more than a volume of
 /// its kind.
-BoxEstimate estimateBox(const FaceInformation& evidence, double speed_mps, ObjectKind known = ObjectKind::kUnknown);
+BoxEstimate estimateBox(const FaceInformation& evidence, const BodyTraits& traits,
+                        ObjectKind known = ObjectKind::kUnknown);
 
 }  // namespace motorcade

@@ -35,6 +35,14 @@ FacePrior facePrior(const UsualSize& size, double ahead_sigma_m) {
   return {prior, logDeterminant(Eigen::LLT<Matrix6d>(prior.H))};
 }
 
+double misfitOf(const UsualSize& size, const BodyTraits& traits) {
+  constexpr double kStandOut_m = 0.2;    // mirrors and bags, which a size leaves out
+  constexpr double kMostByOthers = 6.0;  // one track in twenty holds points of another body: -2 log(0.05)
+  const Eigen::Array3d sigma_m = (size.sigma_m.array().square() + kStandOut_m * kStandOut_m).sqrt();
+  const Eigen::Array3d beyond = (traits.least_size_m - size.mean_m).array() / sigma_m;
+  return std::min(kMostByOthers, beyond.max(0.0).square().sum());
+}
+
 double logDeterminant(const Eigen::LLT<Matrix6d>& llt) {
   const double root = Vector6d(llt.matrixLLT().diagonal()).prod();
   return 2 * logarithm(root);
@@ -153,7 +161,7 @@ Component componentOf(ObjectKind kind, const FacePrior& prior, const Blurred& se
   return component;
 }
 
-Components componentsOf(const FaceInformation& evidence, double speed_mps) {
+Components componentsOf(const FaceInformation& evidence, const BodyTraits& traits) {
   std::array<Blurred, kSharedErrors.size()> seen;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     seen[i] = blurred(evidence, kSharedErrors[i].sigma_m);
@@ -163,7 +171,8 @@ Components componentsOf(const FaceInformation& evidence, double speed_mps) {
   auto* component = components.data();
   for (std::size_t i = 0; i < kKindsOfStreets.size(); ++i) {
     const BelievedKind& kind = kKindsOfStreets[i];
-    const double log_prior = logarithm(kind.share * densityOf(speed_mps, kind.paces));
+    const double log_prior =
+        logarithm(kind.share * densityOf(traits.speed_mps, kind.paces)) - 0.5 * misfitOf(kind.size, traits);
     for (const Blurred& blurry : seen) {
       *component = componentOf(kind.kind, kPriorsOfStreets[i], blurry);
       component++->log_weight += log_prior;
@@ -208,19 +217,19 @@ void setKind(ObjectBox& box, const Components& components) {
 
 }  // namespace
 
-ObjectKind smallKind(const FaceInformation& evidence, double speed_mps, double least) {
-  const Components components = componentsOf(evidence, speed_mps);
+ObjectKind smallKind(const FaceInformation& evidence, const BodyTraits& traits, double least) {
+  const Components components = componentsOf(evidence, traits);
   const double walks = probabilityOf(ObjectKind::kPedestrian, components),
                rides = probabilityOf(ObjectKind::kTwoWheeler, components);
   if (std::max(walks, rides) < least) return ObjectKind::kUnknown;
   return walks > rides ? ObjectKind::kPedestrian : ObjectKind::kTwoWheeler;
 }
 
-ObjectBox believedBox(const FaceInformation& evidence, double speed_mps) {
-  const Components components = componentsOf(evidence, speed_mps);
+ObjectBox believedBox(const FaceInformation& evidence, const BodyTraits& traits) {
+  const Components components = componentsOf(evidence, traits);
   ObjectBox believed;
   setKind(believed, components);
-  const BoxEstimate estimate = estimateBox(evidence, speed_mps, believed.kind);
+  const BoxEstimate estimate = estimateBox(evidence, traits, believed.kind);
   believed.center_body = 0.5 * (estimate.least() + estimate.most());
   believed.size_m = estimate.most() - estimate.least();
   for (int axis = 0; axis < 3; ++axis) setSpread(believed, components, axis);

@@ -21,6 +21,9 @@ struct FacePrior {
 /// within a quarter of the length.
 FacePrior facePrior(const UsualSize& size, double ahead_sigma_m);
 
+/// Misfit of a usual size with the least size that points leave to a body, as a chi-square value.
+double misfitOf(const UsualSize& size, const BodyTraits& traits);
+
 double logDeterminant(const Eigen::LLT<Matrix6d>& llt);
 
 /// Cuboid and belief in it: its kind, `unknown` unless one is likelier than 0.6, the probability of the likeliest kind,
@@ -30,9 +33,9 @@ double logDeterminant(const Eigen::LLT<Matrix6d>& llt);
 /// besides, the object may be something else. All looks at it may be wrong by the same amount: as bodies are no
 /// cuboids, or as an outline holds more than the object, or less. Standard deviations are around the cuboid, over the
 /// whole mixture.
-ObjectBox believedBox(const FaceInformation& evidence, double speed_mps);
+ObjectBox believedBox(const FaceInformation& evidence, const BodyTraits& traits);
 
 /// The likelier kind of pedestrian and two-wheeler, where its probability is `least` or more; `unknown` elsewhere.
-ObjectKind smallKind(const FaceInformation& evidence, double speed_mps, double least);
+ObjectKind smallKind(const FaceInformation& evidence, const BodyTraits& traits, double least);
 
 }  // namespace motorcade

@@ -12,6 +12,7 @@
 #include "frontend/shape/motion_verdict.hpp"
 #include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline_completion.hpp"
+#include "frontend/shape/point_extent.hpp"
 
 namespace motorcade {
 namespace {
@@ -37,29 +38,6 @@ const std::array<double, kMemory_frames + 1>& fadingByFrames() {
     return by_frames;
   }();
   return fadings;
-}
-
-/// Box around the points of an object, in its body frame, without the outermost tenth at each side.
-std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
-                                            const SE3& T_body_cam, double disparity_offset_px) {
-  constexpr std::size_t kLeastPoints = 5;
-  constexpr double kFarthest_m = 15;  // of a point on an object from its body's origin
-  std::array<std::vector<double>, 3> along;
-  for (const PointMeasurement& p : points) {
-    const Eigen::Vector3d uvd_px = p.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, disparity_offset_px);
-    if (uvd_px.z() <= 0) continue;
-    const Eigen::Vector3d p_body = T_body_cam * camera.triangulate(uvd_px);
-    if (p_body.norm() > kFarthest_m) continue;
-    for (int axis = 0; axis < 3; ++axis) along[axis].push_back(p_body[axis]);
-  }
-  if (along[0].size() < kLeastPoints) return std::nullopt;
-  Eigen::Vector3d least, most;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::sort(along[axis]);
-    const std::size_t left_out = along[axis].size() / 10;
-    least[axis] = along[axis][left_out], most[axis] = along[axis][along[axis].size() - 1 - left_out];
-  }
-  return Eigen::AlignedBox3d(least, most);
 }
 
 /// Evidence of the points by which an object is found: they mostly lie on the face of which the camera sees most.
@@ -132,7 +110,7 @@ EstimatesPtr ObjectShapes::operator()(const Inputs& inputs, const EstimatesPtr& 
   const SE3 T_cam_world = shaped->online.T_world_cam.inverse();
   for (ObjectEstimate& object : shaped->online.objects)
     if (const auto known = shapes_.find(object.track); known != shapes_.end())
-      setBox(object, estimateBox(known->second.evidence, known->second.speed_mps).box(),
+      setBox(object, estimateBox(known->second.evidence, known->second.traits).box(),
              T_cam_world * object.T_world_body);
   predicted_ = lost_.predictedIn(shaped->online);
   for (const ObjectEstimate& lost : predicted_)
@@ -183,7 +161,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
     }
   }
   object.existence_probability = shape.existence.probability();
-  setBox(object, believedBox(shape.evidence, shape.speed_mps), view.T_cam_body);
+  setBox(object, believedBox(shape.evidence, shape.traits), view.T_cam_body);
 }
 
 /// View of the object and belief in its cuboid. Its shape becomes that of this frame.
@@ -203,22 +181,28 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   const auto* observed = observationOf(object.track, *inputs.measurements);
   if (is_new && observed && observed->born_slow && !observed->born_labelled) shape.existence.doubtSlowBirth();
   shape.last = frame.head.frame;
-  shape.speed_mps = object.velocity_world_mps.norm();
+  shape.traits.speed_mps = object.velocity_world_mps.norm();
   ObjectView view{.T_cam_body = T_cam_body,
-                  .box = estimateBox(shape.evidence, shape.speed_mps),
+                  .box = estimateBox(shape.evidence, shape.traits),
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px,
                   .scene = scene.points};
-  if (observed) view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  std::optional<Eigen::AlignedBox3d> sure;
+  if (observed) {
+    view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+    sure = sureExtentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+    if (sure) shape.traits.least_size_m = shape.sure_sizes.add(sure->sizes());
+  }
   if (is_new && observed && observed->born_slow && !view.points)
     view.points = extentOf(observed->patches, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
   if (is_new && view.points) {
     if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
-    view.box = estimateBox(shape.evidence, shape.speed_mps);
+    view.box = estimateBox(shape.evidence, shape.traits);
   }
   const ObjectKind small = smallKindOf(view, observed, shape);
   view.small = small != ObjectKind::kUnknown;
-  if (view.small) view.box = estimateBox(shape.evidence, shape.speed_mps, small);
+  if (view.small) view.box = estimateBox(shape.evidence, shape.traits, small);
+  if (sure && !view.small) view.box.reach(*sure);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
   if (view.small) view.width = kTrunk_m * camera_.fx_px / T_cam_body.translation().z() / (1 << view.level);
   if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);
@@ -235,10 +219,10 @@ ObjectKind ObjectShapes::smallKindOf(const ObjectView& view, const ObjectObserva
                                      const Shape& shape) const {
   constexpr double kFastest_mps = 8, kLongest_m = 1.8;
   constexpr double kMayWellBe = 0.2, kRather = 0.6;  // what is cut off looks small
-  if (shape.speed_mps > kFastest_mps) return ObjectKind::kUnknown;
+  if (shape.traits.speed_mps > kFastest_mps) return ObjectKind::kUnknown;
   if (view.points && view.points->sizes().head<2>().norm() > kLongest_m) return ObjectKind::kUnknown;
   const bool cut_off = observed && isCutOff(observed->box, view.T_cam_body, camera_);
-  return smallKind(shape.evidence, shape.speed_mps, cut_off ? kRather : kMayWellBe);
+  return smallKind(shape.evidence, shape.traits, cut_off ? kRather : kMayWellBe);
 }
 
 /// Evidence of the outline on the faces, which also updates `view.box`. Empty, with the box as it was, where that makes
@@ -251,7 +235,7 @@ std::optional<FaceInformation> ObjectShapes::measured(const Sight& seen, ObjectV
     look = measureFaces(seen, surface, view, camera_);
     FaceInformation both = shape.evidence;
     both.add(look, kLookWeight);
-    view.box = estimateBox(both, shape.speed_mps);
+    view.box = estimateBox(both, shape.traits);
     const Eigen::Array3d size_m = view.box.most() - view.box.least();
     if ((size_m > kLeastSize_m).all() && (size_m < kMostSize_m).all()) continue;
     view.box = before;
@@ -301,7 +285,7 @@ void ObjectShapes::gatherShapes(FrameEstimate& frame) const {
     if (dense != shape->second.only_dense.end() && object.state == ObjectState::kPredicted)
       markSeen(object, dense->second);
     const SE3 T_cam_body = frame.T_world_cam.inverse() * object.T_world_body;
-    setBox(object, believedBox(evidenceAround(shape->second, frame.head.frame), shape->second.speed_mps), T_cam_body);
+    setBox(object, believedBox(evidenceAround(shape->second, frame.head.frame), shape->second.traits), T_cam_body);
     object.existence_probability = shape->second.existence.settledProbability(frame.head.frame);
   }
   dropLeft(frame, camera_);

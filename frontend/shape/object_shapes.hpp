@@ -14,6 +14,7 @@
 #include "frontend/shape/lost_objects.hpp"
 #include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline.hpp"
+#include "frontend/shape/point_extent.hpp"
 
 namespace motorcade {
 
@@ -55,7 +56,8 @@ class ObjectShapes {
     Existence existence;
     FaceInformation first;     // before its first outline
     FaceInformation evidence;  // faded with age
-    double speed_mps = 0;
+    BodyTraits traits;
+    SureSizes sure_sizes;
     FrameId last;
     ObjectState state = ObjectState::kMoving;  // when its points were last followed
     std::map<FrameId, Look> looks;

@@ -20,7 +20,7 @@ FaceInformation seen(const Eigen::Vector3d& size_m, double sigma_m) {
 
 TEST(BoxBelief, KindsAreToldBySizeAndSpeed) {
   const auto kind = [](const Eigen::Vector3d& size_m, double speed_mps) {
-    return estimateBox(seen(size_m, 0.1), speed_mps).kind;
+    return estimateBox(seen(size_m, 0.1), {speed_mps}).kind;
   };
   EXPECT_EQ(kind({4.3, 1.8, 1.5}, 15), ObjectKind::kCar);
   EXPECT_EQ(kind({5.4, 2.0, 2.2}, 15), ObjectKind::kCar);  // a van
@@ -28,14 +28,14 @@ TEST(BoxBelief, KindsAreToldBySizeAndSpeed) {
   EXPECT_EQ(kind({1.8, 0.6, 1.7}, 6), ObjectKind::kTwoWheeler);
   EXPECT_EQ(kind({0.8, 0.6, 1.75}, 1.5), ObjectKind::kPedestrian);
   EXPECT_EQ(kind({1.3, 0.6, 1.75}, 5), ObjectKind::kTwoWheeler);  // too short for one, too fast for a walker
-  const BoxEstimate fast = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 10),
-                    slow = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), 1);
+  const BoxEstimate fast = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), {10}),
+                    slow = estimateBox(seen({1.2, 0.65, 1.75}, 0.3), {1});
   EXPECT_EQ(fast.kind, ObjectKind::kTwoWheeler);  // nobody runs that fast
   EXPECT_EQ(slow.kind, ObjectKind::kPedestrian);
 }
 
 TEST(BoxBelief, WithoutEvidenceThereIsACarOfUsualSize) {
-  const BoxEstimate estimate = estimateBox({}, 10);
+  const BoxEstimate estimate = estimateBox({}, {10});
   EXPECT_EQ(estimate.kind, ObjectKind::kCar);
   EXPECT_NEAR(estimate.box().size_m.x(), 4, 0.5);
   EXPECT_GT(estimate.box().center_sigma_m.x(), 1);
@@ -47,13 +47,13 @@ TEST(BoxBelief, HiddenFacesComeFromTheKindAndGrowSureWhenTheyAreSeen) {
   for (const Face face : {kRight, kLeft}) rear.add(Vector6d::Unit(face), face == kLeft ? 0.9 : -0.9, 0.05);
   rear.add(Vector6d::Unit(kBottom), -0.8, 0.05);
   rear.add(Vector6d::Unit(kTop), 0.7, 0.05);
-  const ObjectBox hidden = estimateBox(rear, 10).box();
+  const ObjectBox hidden = estimateBox(rear, {10}).box();
   EXPECT_NEAR(hidden.size_m.x(), 4.1, 0.2);
   EXPECT_NEAR(hidden.center_body.x(), -0.2 + 0.5 * hidden.size_m.x(), 0.1);
   EXPECT_GT(hidden.size_sigma_m.x(), 0.3);
   EXPECT_LT(hidden.size_sigma_m.y(), 0.1);
   rear.add(Vector6d::Unit(kFront), 4.5, 0.1);
-  const ObjectBox found = estimateBox(rear, 10).box();
+  const ObjectBox found = estimateBox(rear, {10}).box();
   EXPECT_NEAR(found.size_m.x(), 4.7, 0.15);
   EXPECT_LT(found.size_sigma_m.x(), 0.2);
 }
@@ -62,15 +62,15 @@ TEST(BoxBelief, AKnownKindClosesWhatIsHidden) {
   FaceInformation rear;
   for (const Face face : {kRear, kBottom}) rear.add(Vector6d::Unit(face), -0.8, 0.1);
   for (const auto& [kind, length_m] : {std::pair(ObjectKind::kPedestrian, 0.84), {ObjectKind::kLargeVehicle, 10.0}}) {
-    const BoxEstimate estimate = estimateBox(rear, 10, kind);
+    const BoxEstimate estimate = estimateBox(rear, {10}, kind);
     EXPECT_EQ(estimate.kind, kind);
     EXPECT_NEAR(estimate.box().size_m.x(), length_m, 0.25 * length_m) << "the origin tells a little, too";
   }
-  EXPECT_EQ(estimateBox(rear, 10, ObjectKind::kUnknown).kind, ObjectKind::kCar);
+  EXPECT_EQ(estimateBox(rear, {10}, ObjectKind::kUnknown).kind, ObjectKind::kCar);
 }
 
 TEST(BoxBelief, ThePossibleVolumeHoldsWhatIsNotRuledOut) {
-  const BoxEstimate unknown = estimateBox({}, 5), known = estimateBox(seen({4.3, 1.8, 1.5}, 0.05), 15);
+  const BoxEstimate unknown = estimateBox({}, {5}), known = estimateBox(seen({4.3, 1.8, 1.5}, 0.05), {15});
   EXPECT_GT((unknown.possible_most - unknown.possible_least).z(), 2);  // a large vehicle is not ruled out
   EXPECT_LT((known.possible_most - known.possible_least).z(), 1.7);
   EXPECT_TRUE((unknown.possible_least.array() <= unknown.usual_least.array()).all());
@@ -78,7 +78,7 @@ TEST(BoxBelief, ThePossibleVolumeHoldsWhatIsNotRuledOut) {
 }
 
 TEST(BoxBelief, TheVolumeOfWhatIsKnownToWalkIsAPersons) {
-  const BoxEstimate any = estimateBox({}, 1.4), person = estimateBox({}, 1.4, ObjectKind::kPedestrian);
+  const BoxEstimate any = estimateBox({}, {1.4}), person = estimateBox({}, {1.4}, ObjectKind::kPedestrian);
   EXPECT_GT((any.usual_most - any.usual_least).x(), 4);
   EXPECT_LT((person.usual_most - person.usual_least).x(), 1);
   EXPECT_LT((person.possible_most - person.possible_least).y(), (any.possible_most - any.possible_least).y() - 0.8);
@@ -93,6 +93,18 @@ TEST(FaceInformation, MovesWithTheBodyFrame) {
   EXPECT_LT((moved.H - expected.H).norm(), 1e-9);
   EXPECT_LT((moved.b - expected.b).norm(), 1e-9);
   EXPECT_NEAR(moved.c, expected.c, 1e-9);
+}
+
+TEST(BoxBelief, VolumesReachOverWhatIsKnownOfTheBody) {
+  const BoxEstimate before = estimateBox(seen({4.3, 1.8, 1.5}, 0.05), {15});
+  BoxEstimate after = before;
+  after.reach({Eigen::Vector3d(-9, 0.5, 0), Eigen::Vector3d(1, -0.5, 0.1)});  // nothing is sure of its width
+  EXPECT_EQ(after.usual_least.x(), -9);
+  EXPECT_EQ(after.possible_least.x(), -9);
+  EXPECT_EQ(after.usual_most, before.usual_most);
+  EXPECT_EQ(after.possible_most, before.possible_most);
+  EXPECT_EQ(after.usual_least.tail<2>(), before.usual_least.tail<2>());
+  EXPECT_EQ(after.faces, before.faces);
 }
 
 }  // namespace

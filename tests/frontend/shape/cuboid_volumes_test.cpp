@@ -19,7 +19,7 @@ class VolumesOfCar : public testing::Test {
   VolumesOfCar() {
     FaceInformation sure;
     for (int face = 0; face < 6; ++face) sure.add(Vector6d::Unit(face), faces_[face], 0.1);
-    view_.box = estimateBox(sure, 10);
+    view_.box = estimateBox(sure, {10});
   }
   std::vector<std::uint8_t> tell(std::uint8_t asked = CuboidVolumes::kPossible) const {
     std::vector<std::uint8_t> cells(kVolumeWindow.area(), asked);

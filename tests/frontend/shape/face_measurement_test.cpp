@@ -24,12 +24,12 @@ BoxEstimate afterLooks(const SE3& T_cam_body, const SE3& T_cam_frame, const Eige
   const LevelDisparities seen = street.disparities(kFaceWindow, 1);
   FaceInformation evidence;
   ObjectView view{.T_cam_body = T_cam_frame,
-                  .box = estimateBox(evidence, 10),
+                  .box = estimateBox(evidence, {10}),
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
   for (int i = 0; i < 15; ++i) {
     evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
-    view.box = estimateBox(evidence, 10);
+    view.box = estimateBox(evidence, {10});
   }
   return view.box;
 }
@@ -62,12 +62,12 @@ TEST(FaceMeasurement, HoldsTheFollowedPoints) {
   const SE3 T_cam_body = StreetByHand::standingAt(0, 14);
   const StreetByHand street({{T_cam_body, StreetByHand::faces(kMeasuredCar_m)}});
   const LevelDisparities seen = street.disparities(kFaceWindow, 1);
-  ObjectView view{.T_cam_body = T_cam_body, .box = estimateBox({}, 10), .ground = {}, .disparity_offset_px = 0};
+  ObjectView view{.T_cam_body = T_cam_body, .box = estimateBox({}, {10}), .ground = {}, .disparity_offset_px = 0};
   const auto front = [&] {
     FaceInformation look;
     look.add(
         measuredFaces(seen, {.window = kFaceWindow, .inside = std::vector<std::uint8_t>(kFaceWindow.area(), 0)}, view));
-    return estimateBox(look, 10).most().x();
+    return estimateBox(look, {10}).most().x();
   };
   const double without = front();
   view.points = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -0.5, 0), Eigen::Vector3d(5, 0.5, 1));
@@ -83,13 +83,13 @@ TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) 
   FaceInformation evidence;
   evidence.add(Vector6d::Unit(kRear), -0.5 * kMeasuredCar_m.x() + 2, 0.2);
   ObjectView view{.T_cam_body = T_cam_body,
-                  .box = estimateBox(evidence, 15),
+                  .box = estimateBox(evidence, {15}),
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
   EXPECT_GT(view.box.least().x(), -0.5 * kMeasuredCar_m.x() + 1.5);
   for (int i = 0; i < 40; ++i) {
     evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
-    view.box = estimateBox(evidence, 15);
+    view.box = estimateBox(evidence, {15});
   }
   EXPECT_NEAR(view.box.least().x(), -0.5 * kMeasuredCar_m.x(), 0.3);
 }
@@ -102,12 +102,12 @@ TEST(FaceMeasurement, AFlankThatGoesOnWhereItIsNoLongerSharpIsLonger) {
   const LevelDisparities seen = street.disparities({.u0 = 80, .v0 = 0, .width = 74, .height = 46}, 3);
   FaceInformation evidence;
   ObjectView view{.T_cam_body = T_cam_body * SE3(Eigen::Matrix3d::Identity(), {-3, 1.25, 1}),
-                  .box = estimateBox(evidence, 6),
+                  .box = estimateBox(evidence, {6}),
                   .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
                   .disparity_offset_px = 0};
   for (int i = 0; i < 15; ++i) {
     evidence.add(measuredFaces(seen, outlineOf(seen, view), view), 0.15);
-    view.box = estimateBox(evidence, 6);
+    view.box = estimateBox(evidence, {6});
   }
   EXPECT_NEAR(view.box.most().x() - 3, 0.5 * trailer_m.x(), 2);
 }

@@ -20,7 +20,7 @@ ObjectView viewOf(const SE3& T_cam_body, const Eigen::Vector3d& size_m) {
   FaceInformation sure;
   for (int face = 0; face < 6; ++face) sure.add(Vector6d::Unit(face), StreetByHand::faces(size_m)[face], 0.1);
   return {.T_cam_body = T_cam_body,
-          .box = estimateBox(sure, 10),
+          .box = estimateBox(sure, {10}),
           .ground = {.normal_cam = {0, 1, 0}, .height_m = StreetByHand::kRoad_m},
           .disparity_offset_px = 0};
 }
