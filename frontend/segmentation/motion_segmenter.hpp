@@ -47,6 +47,7 @@ class MotionSegmenter {
   bool isVertex(const ScenePoint& point) const;
 
  private:
+  /// The points of a frame, which get labels, the road below them and the camera's speed.
   struct Scene {
     std::vector<ScenePoint>& points;
     const GroundPlane& ground;
