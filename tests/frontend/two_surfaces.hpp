@@ -76,8 +76,12 @@ class TwoSurfaces {
   static std::vector<Eigen::Vector2d> choosePoints() {
     Noise noise(5);
     std::vector<Eigen::Vector2d> points;
-    for (int i = 0; i < kWallPoints; ++i) points.emplace_back(noise.uniform(-1, 14), noise.uniform(-4, 4));
-    for (int i = 0; i < kCarPoints; ++i) points.emplace_back(noise.uniform(-1.4, -0.8), noise.uniform(-0.4, 0.3));
+    const auto add = [&](double least_x, double most_x, double least_y, double most_y) {
+      const double y = noise.uniform(least_y, most_y), x = noise.uniform(least_x, most_x);
+      points.emplace_back(x, y);
+    };
+    for (int i = 0; i < kWallPoints; ++i) add(-1, 14, -4, 4);
+    for (int i = 0; i < kCarPoints; ++i) add(-1.4, -0.8, -0.4, 0.3);
     return points;
   }
 
