@@ -98,7 +98,7 @@ TEST(FaceInformation, MovesWithTheBodyFrame) {
 TEST(BoxBelief, VolumesReachOverWhatIsKnownOfTheBody) {
   const BoxEstimate before = estimateBox(seen({4.3, 1.8, 1.5}, 0.05), {15});
   BoxEstimate after = before;
-  after.reach({Eigen::Vector3d(-9, 0.5, 0), Eigen::Vector3d(1, -0.5, 0.1)});  // nothing is sure of its width
+  after.reach({Eigen::Vector3d(-9, -3, 0), Eigen::Vector3d(1, -4, 0.1)});  // nothing is sure of its width
   EXPECT_EQ(after.usual_least.x(), -9);
   EXPECT_EQ(after.possible_least.x(), -9);
   EXPECT_EQ(after.usual_most, before.usual_most);
