@@ -25,7 +25,7 @@ struct FaceInformation {
   FaceInformation shifted(const Eigen::Vector3d& shift) const;
 };
 
-/// What the followed points tell of a body.
+/// Traits of a body that its followed points tell.
 struct BodyTraits {
   double speed_mps = 0;
   Eigen::Vector3d least_size_m = Eigen::Vector3d::Zero();  // along its axes, as its points are so far apart

@@ -187,14 +187,13 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
                   .ground = scene.ground,
                   .disparity_offset_px = scene.disparity_offset_px,
                   .scene = scene.points};
-  std::optional<Eigen::AlignedBox3d> sure;
-  if (observed) {
-    view.points = extentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
-    sure = sureExtentOf(observed->measured, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
-    if (sure) shape.traits.least_size_m = shape.sure_sizes.add(sure->sizes());
-  }
-  if (is_new && observed && observed->born_slow && !view.points)
-    view.points = extentOf(observed->patches, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  const auto extent_of = [&](const std::vector<PointMeasurement>& points) {
+    return extentOf(points, camera_, T_cam_body.inverse(), scene.disparity_offset_px);
+  };
+  const PointExtent extent = observed ? extent_of(observed->measured) : PointExtent{};
+  view.points = extent.box;
+  if (extent.sure) shape.traits.least_size_m = shape.sure_sizes.add(extent.sure->sizes());
+  if (is_new && observed && observed->born_slow && !view.points) view.points = extent_of(observed->patches).box;
   if (is_new && view.points) {
     if (!isCutOff(observed->box, T_cam_body, camera_)) shape.evidence = shape.first = nearFaceAtPoints(view);
     view.box = estimateBox(shape.evidence, shape.traits);
@@ -202,7 +201,7 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   const ObjectKind small = smallKindOf(view, observed, shape);
   view.small = small != ObjectKind::kUnknown;
   if (view.small) view.box = estimateBox(shape.evidence, shape.traits, small);
-  if (sure && !view.small) view.box.reach(*sure);
+  if (extent.sure && !view.small) view.box.reach(*extent.sure);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
   if (view.small) view.width = kTrunk_m * camera_.fx_px / T_cam_body.translation().z() / (1 << view.level);
   if (!is_new) view.before = earlier_.last(object.track, view, *inputs.features);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <utility>
 
 namespace motorcade {
 namespace {
@@ -12,14 +13,27 @@ constexpr std::size_t kStrayPart = 10, kOthersPart = 5;  // of the points, at ea
 constexpr double kFarthest_m = 15;                       // of a point on an object from its body's origin
 constexpr double kSigmas = 2;                            // of a point's depth
 
-/// Places of points along each body axis, moved inwards and outwards by the noise of their depth.
-struct Places {
-  std::array<std::vector<double>, 3> middle, early, late;
-};
+/// Places along each body axis.
+using Places = std::array<std::vector<double>, 3>;
 
-Places placesOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera, const SE3& T_body_cam,
-                double disparity_offset_px) {
-  Places places;
+/// Box from the place below which a part of the first lies to the one above which a part of the last does.
+Eigen::AlignedBox3d boxBetween(Places first, Places last, std::size_t part) {
+  Eigen::AlignedBox3d box;
+  const std::size_t left_out = first[0].size() / part;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::sort(first[axis]);
+    std::ranges::sort(last[axis]);
+    box.min()[axis] = first[axis][left_out];
+    box.max()[axis] = last[axis][last[axis].size() - 1 - left_out];
+  }
+  return box;
+}
+
+}  // namespace
+
+PointExtent extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera, const SE3& T_body_cam,
+                     double disparity_offset_px) {
+  Places middle, early, late;  // early and late by the noise of depth
   for (const PointMeasurement& p : points) {
     const Eigen::Vector3d uvd_px = p.uvd_px.cast<double>() + Eigen::Vector3d(0, 0, disparity_offset_px);
     if (uvd_px.z() <= 0) continue;
@@ -27,48 +41,16 @@ Places placesOf(const std::vector<PointMeasurement>& points, const StereoCamera&
     if (p_body.norm() > kFarthest_m) continue;
     const Eigen::Vector3d noise_m = kSigmas * p.sigma_px.z() / uvd_px.z() * (T_body_cam.rotation() * p_cam).cwiseAbs();
     for (int axis = 0; axis < 3; ++axis) {
-      places.middle[axis].push_back(p_body[axis]);
-      places.early[axis].push_back(p_body[axis] - noise_m[axis]);
-      places.late[axis].push_back(p_body[axis] + noise_m[axis]);
+      middle[axis].push_back(p_body[axis]);
+      early[axis].push_back(p_body[axis] - noise_m[axis]);
+      late[axis].push_back(p_body[axis] + noise_m[axis]);
     }
   }
-  return places;
-}
-
-/// The value below which a part of them lies, or above.
-double lowest(std::vector<double>& values, std::size_t part) {
-  std::ranges::sort(values);
-  return values[values.size() / part];
-}
-double highest(std::vector<double>& values, std::size_t part) {
-  std::ranges::sort(values);
-  return values[values.size() - 1 - values.size() / part];
-}
-
-}  // namespace
-
-std::optional<Eigen::AlignedBox3d> extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
-                                            const SE3& T_body_cam, double disparity_offset_px) {
-  Places places = placesOf(points, camera, T_body_cam, disparity_offset_px);
-  if (places.middle[0].size() < kLeastPoints) return std::nullopt;
-  Eigen::AlignedBox3d box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min()[axis] = lowest(places.middle[axis], kStrayPart);
-    box.max()[axis] = highest(places.middle[axis], kStrayPart);
-  }
-  return box;
-}
-
-std::optional<Eigen::AlignedBox3d> sureExtentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera,
-                                                const SE3& T_body_cam, double disparity_offset_px) {
-  Places places = placesOf(points, camera, T_body_cam, disparity_offset_px);
-  if (places.middle[0].size() < kLeastSure) return std::nullopt;
-  Eigen::AlignedBox3d box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min()[axis] = lowest(places.late[axis], kOthersPart);
-    box.max()[axis] = highest(places.early[axis], kOthersPart);
-  }
-  return box;
+  PointExtent extent;
+  const std::size_t count = middle[0].size();
+  if (count >= kLeastPoints) extent.box = boxBetween(middle, middle, kStrayPart);
+  if (count >= kLeastSure) extent.sure = boxBetween(std::move(late), std::move(early), kOthersPart);
+  return extent;
 }
 
 Eigen::Vector3d SureSizes::add(const Eigen::Vector3d& size_m) {

@@ -25,23 +25,23 @@ std::vector<PointMeasurement> pointsOfACar(std::size_t count, float sigma_px) {
 }
 
 TEST(PointExtent, LeavesOutATenthAtEachSide) {
-  const auto box = extentOf(pointsOfACar(2000, 0.25F), kRig, kT_cam_body.inverse(), 0);
+  const auto box = extentOf(pointsOfACar(2000, 0.25F), kRig, kT_cam_body.inverse(), 0).box;
   ASSERT_TRUE(box);
   EXPECT_LT((box->sizes() - 0.8 * Eigen::Vector3d(4, 1.6, 1.4)).cwiseAbs().maxCoeff(), 0.15);
-  EXPECT_FALSE(extentOf(pointsOfACar(4, 0.25F), kRig, kT_cam_body.inverse(), 0));
+  EXPECT_FALSE(extentOf(pointsOfACar(4, 0.25F), kRig, kT_cam_body.inverse(), 0).box);
 }
 
 TEST(PointExtent, IsSureWithoutAFifthAtEachSideAndTheNoiseOfDepth) {
-  const auto exact = sureExtentOf(pointsOfACar(2000, 0.001F), kRig, kT_cam_body.inverse(), 0);
+  const auto exact = extentOf(pointsOfACar(2000, 0.001F), kRig, kT_cam_body.inverse(), 0).sure;
   ASSERT_TRUE(exact);
   EXPECT_LT((exact->sizes() - 0.6 * Eigen::Vector3d(4, 1.6, 1.4)).cwiseAbs().maxCoeff(), 0.15);
   const double noise_m = 10 * 10 / (kRig.fx_px * kRig.baseline_m);  // of a pixel, 10 m ahead
-  const auto noisy = sureExtentOf(pointsOfACar(2000, 1), kRig, kT_cam_body.inverse(), 0);
+  const auto noisy = extentOf(pointsOfACar(2000, 1), kRig, kT_cam_body.inverse(), 0).sure;
   ASSERT_TRUE(noisy);
   EXPECT_NEAR(noisy->sizes().x(), exact->sizes().x() - 4 * noise_m, 0.3 * noise_m);
   EXPECT_NEAR(noisy->sizes().y(), exact->sizes().y(), 0.3 * noise_m) << "across the view depth matters little";
-  EXPECT_LT(sureExtentOf(pointsOfACar(2000, 10), kRig, kT_cam_body.inverse(), 0)->sizes().x(), 0);
-  EXPECT_FALSE(sureExtentOf(pointsOfACar(9, 0.25F), kRig, kT_cam_body.inverse(), 0));
+  EXPECT_LT(extentOf(pointsOfACar(2000, 10), kRig, kT_cam_body.inverse(), 0).sure->sizes().x(), 0);
+  EXPECT_FALSE(extentOf(pointsOfACar(9, 0.25F), kRig, kT_cam_body.inverse(), 0).sure);
 }
 
 TEST(SureSizes, CountWhereFiveFramesReachThem) {
