@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/decompositions.hpp"
+#include "frontend/segmentation/geometric_constraints.hpp"
 #include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
@@ -76,7 +77,7 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
                                                                              std::vector<Observation> seen,
                                                                              const PosePrior& prior) const {
   Agreement a{.fit = {}, .seen = std::move(seen), .chi2 = {}, .inliers = {}};
-  if (static_cast<int>(a.seen.size()) < params_.min_points) return std::nullopt;
+  if (a.seen.empty()) return std::nullopt;
   std::vector<PoseObservation> observed;
   for (const auto& s : a.seen) observed.push_back(observe(object.points[s.body_point], *s.now));
   const PoseObservations observations(observed);
@@ -90,6 +91,16 @@ std::optional<ObjectMotionEstimator::Agreement> ObjectMotionEstimator::agree(con
   return a;
 }
 
+/// True for a followed point of a person whose own track proves that it moves, as the person does. Shadows move alike,
+/// beside the body; feet rest on the ground.
+bool ObjectMotionEstimator::provesWalk(const TrackedObject& object, const ScenePoint& point, const SceneMotion& scene,
+                                       const SE3& T_world_cam) const {
+  constexpr double kShadow_m = 0.3;  // height over the ground up to which a point may be of the shadow, or of a foot
+  return object.born_slow && mayBeWalking(object, camera_) && point.flow && !point.ambiguous &&
+         scene.ground.heightOf_m(point.flow->p_cam) > kShadow_m &&
+         movesSurely(camera_, *point.flow, scene.camera_speed_mps) && object.carries(*point.flow, T_world_cam);
+}
+
 std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& object, const SceneMotion& scene,
                                                                const SE3& T_world_cam) const {
   const PosePrior prior{T_world_cam.inverse() * object.kinematics.pose(), inverse(object.kinematics.poseCovariance())};
@@ -101,8 +112,11 @@ std::optional<ObjectObservation> ObjectMotionEstimator::follow(TrackedObject& ob
     agreement = agree(object, std::move(seen), prior);
   }
   if (!agreement) return std::nullopt;
-  if (!agreement->enough) {
-    dropMisfits(object, agreement->seen, agreement->chi2);
+  const auto proves = [&](const Observation& o) { return provesWalk(object, *o.now, scene, T_world_cam); };
+  if (!agreement->enough && !std::ranges::any_of(agreement->inliers, proves)) {
+    // One or two points leave the pose open, and with it which of them fits.
+    const bool determined = static_cast<int>(agreement->seen.size()) >= params_.min_points;
+    if (determined) dropMisfits(object, agreement->seen, agreement->chi2);
     return std::nullopt;
   }
   object.T_cam_body = agreement->fit.T_cam_ref;

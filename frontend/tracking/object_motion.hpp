@@ -29,8 +29,9 @@ class ObjectMotionEstimator {
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// Measures the pose from the body points seen in `scene`, with the predicted kinematics as prior. Where too few are
-  /// seen, points found by their patches are used, too. Updates kinematics, points and misfits. Empty (and the object
-  /// unchanged but for misfits) when too few points agree. The caller fills the result's frame, track and state.
+  /// seen, points found by their patches are used, too. Of who was born as a walker one point is enough that surely
+  /// moves as the body does. Updates kinematics, points and misfits. Empty (and the object unchanged but for misfits)
+  /// when too few points agree. The caller fills the result's frame, track and state.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
                                           const SE3& T_world_cam) const;
 
@@ -85,6 +86,8 @@ class ObjectMotionEstimator {
   };
   std::optional<Agreement> agree(const TrackedObject& object, std::vector<Observation> seen,
                                  const PosePrior& prior) const;
+  bool provesWalk(const TrackedObject& object, const ScenePoint& point, const SceneMotion& scene,
+                  const SE3& T_world_cam) const;
   /// Adds the points that are not seen in the scene but are found by their patches in `known`, which hold them.
   std::vector<ScenePoint> search(const TrackedObject& object, const SceneMotion& scene, const MeasuredPoints& known,
                                  const SE3& T_cam_body, std::vector<Observation>& seen) const;

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kMargin_m = 0.8;          // beyond the points known so far, in which others may join
 constexpr double kDepthNoiseSigmas = 2.0;  // by which the margin grows
-constexpr double kFitsChi2 = 9.0;          // of a velocity to the body's; 3 degrees of freedom: 97 %
 constexpr double kNotStaticChi2 = 16.0;  // by which a moving point explains the track better than one at rest: 4 sigma
 constexpr double kMinSpeed_mps = 1.0;    // slower objects cannot be told from the background by motion
 /// Largest depth noise of a point that may join: others may be on anything, and would stretch the object without end.
@@ -78,7 +77,7 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     const BodyPoint candidate = toBody(p, object.T_cam_body, camera_);
     const bool within =
         small ? isWithinReachOfSmall(known, candidate, walks) : isWithinReach(known, candidate, component != nullptr);
-    if (!within || object.velocityChi2(*p.flow, T_world_cam) >= kFitsChi2) return;
+    if (!within || !object.carries(*p.flow, T_world_cam)) return;
     if (own && isSeenThrough(scene, *own, asHigh(*regionOf(std::array{&p}), *own), camera_)) return;
     taken[i] = true;
     adopted.push_back(candidate);

@@ -62,14 +62,15 @@ Eigen::Vector3d TrackedObject::velocityAt_mps(const Eigen::Vector3d& p_body) con
   return kinematics.pose().rotation() * (twist.head<3>() + twist.tail<3>().cross(p_body));
 }
 
-double TrackedObject::velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const {
+bool TrackedObject::carries(const SceneFlow& flow, const SE3& T_world_cam) const {
+  constexpr double kMaxChi2 = 9.0;         // 3 degrees of freedom: 97 %
   constexpr double kModelSigma_mps = 0.5;  // a few points' velocities depart from a rigid body's: wheels, wrong matches
   const Eigen::Matrix3d &R = T_world_cam.rotation(), &R_body = kinematics.pose().rotation();
   const Eigen::Vector3d difference = R * flow.velocity_mps - velocityAt_mps(T_cam_body.inverse() * flow.p_cam);
   const Eigen::Matrix3d S = R * flow.covariance.bottomRightCorner<3, 3>() * R.transpose() +
                             R_body * kinematics.velocityCovariance() * R_body.transpose() +
                             kModelSigma_mps * kModelSigma_mps * Eigen::Matrix3d::Identity();
-  return difference.dot(S.inverse() * difference);
+  return difference.dot(S.inverse() * difference) < kMaxChi2;
 }
 
 void TrackedObject::changeBodyFrame(const SE3& T_body_new) {

@@ -65,8 +65,8 @@ struct TrackedObject {
   Eigen::Vector3d middle() const;
   /// Velocity relative to the world of a point on the body, in world axes.
   Eigen::Vector3d velocityAt_mps(const Eigen::Vector3d& p_body) const;
-  /// Misfit of a point's velocity to the body's there; chi-square with 3 degrees of freedom.
-  double velocityChi2(const SceneFlow& flow, const SE3& T_world_cam) const;
+  /// True when a point has the velocity that the body has there, up to their errors.
+  bool carries(const SceneFlow& flow, const SE3& T_world_cam) const;
   /// Changes the body axes, and all that is kept in them.
   void changeBodyFrame(const SE3& T_body_new);
 };

@@ -147,6 +147,51 @@ struct Pedestrian {
   double height_m() const { return object.extent(0).sizes().z(); }
 };
 
+/// Someone of whom one point is still followed, which moves as the person does.
+struct OnePointOfAPerson : Pedestrian {
+  OnePointOfAPerson() : Pedestrian(1.4) {
+    object.born_slow = true;
+    object.points.resize(1);
+    scene.points.resize(1);
+    scene.features = nullptr;  // no patches
+    ScenePoint& point = scene.points.front();
+    point.flow = SceneFlow{.p_cam = kRig.triangulate(point.uvd_px),
+                           .velocity_mps = object.kinematics.velocityWorld_mps(),
+                           .covariance = 0.01 * Eigen::Matrix<double, 6, 6>::Identity()};
+  }
+  bool follow() { return ObjectMotionEstimator({}, kRig).follow(object, scene, SE3{}).has_value(); }
+};
+
+TEST(ObjectMotion, OnePointThatSurelyMovesFollowsAWalker) {
+  OnePointOfAPerson person;
+  EXPECT_TRUE(person.follow());
+}
+
+TEST(ObjectMotion, OnePointThatMayRestFollowsNobody) {
+  OnePointOfAPerson person;
+  person.scene.points.front().flow->covariance *= 100;
+  EXPECT_FALSE(person.follow());
+}
+
+TEST(ObjectMotion, OnePointThatMovesAnotherWayFollowsNobody) {
+  OnePointOfAPerson person;
+  person.scene.points.front().flow->velocity_mps *= -1;
+  EXPECT_FALSE(person.follow());
+}
+
+TEST(ObjectMotion, APointOfAShadowFollowsNobody) {
+  OnePointOfAPerson person;
+  const double height_m = person.scene.ground.heightOf_m(person.scene.points.front().flow->p_cam);
+  person.scene.points.front().flow->p_cam.y() += height_m - 0.2;
+  EXPECT_FALSE(person.follow());
+}
+
+TEST(ObjectMotion, OnePointFollowsNoVehicle) {
+  OnePointOfAPerson slow_car;
+  slow_car.object.born_slow = false;
+  EXPECT_FALSE(slow_car.follow());
+}
+
 TEST(ObjectMotion, PatchesCoverAPersonBeyondThePointsFollowed) {
   Pedestrian pedestrian(1.4);
   pedestrian.cover();
