@@ -15,9 +15,14 @@ namespace motorcade {
 /// where it was.
 class LookBack {
  public:
-  /// Looks back `frames` frames at most, from an object that was spawned up to `confirmed_after` frames ago.
+  /// Frames that an object may take beyond the fewest until it is confirmed, and still be looked for in all frames.
+  /// Each keeps the images of one more pair.
+  static constexpr int kLater = 4;
+
+  /// Looks back `frames` frames at most before an object was spawned. That was `confirmed_after` frames ago, or a few
+  /// more.
   LookBack(int frames, int confirmed_after, const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
-      : frames_(frames), kept_(frames + confirmed_after), motion_(params, camera) {}
+      : frames_(frames), kept_(frames + confirmed_after + kLater), motion_(params, camera) {}
 
   /// Puts the observations found before the object's backlog. It ends at the first frame in which the object is not
   /// found, or in which another object was reported where it is.

@@ -87,6 +87,17 @@ TEST(LookBack, FindsAnObjectInFramesInWhichNoCornerOnItWasFollowed) {
   }
 }
 
+/// It was spawned two frames before the last, where one is the fewest.
+TEST(LookBack, LooksAsFarBackForAnObjectThatIsConfirmedLate) {
+  constexpr int kBack = 3;
+  BoardDrive drive(0);
+  drive.look_back = LookBack(kBack, 1, {}, kRig);
+  for (int frame = 0; frame < kFrames; ++frame) drive.look_back.remember(BoardDrive::scene(frame, true), SE3{}, {}, {});
+  drive.lookBack();
+  ASSERT_FALSE(drive.object.backlog.empty());
+  EXPECT_EQ(drive.object.backlog.front().frame.value, kSpawned - kBack);
+}
+
 TEST(LookBack, EndsWhereTheObjectIsNotSeen) {
   BoardDrive drive(2);
   drive.lookBack();
