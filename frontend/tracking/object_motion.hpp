@@ -29,9 +29,9 @@ class ObjectMotionEstimator {
   ObjectMotionEstimator(const Params& params, const StereoCamera& camera) : params_(params), camera_(camera) {}
 
   /// Measures the pose from the body points seen in `scene`, with the predicted kinematics as prior. Where too few are
-  /// seen, points found by their patches are used, too. Of who was born as a walker one point is enough that surely
-  /// moves as the body does. Updates kinematics, points and misfits. Empty (and the object unchanged but for misfits)
-  /// when too few points agree. The caller fills the result's frame, track and state.
+  /// seen, points found by their patches are used, too. For an object born as a walker, one point is enough if it
+  /// surely moves as the body does. Updates kinematics, points and misfits. Empty (and the object unchanged but for
+  /// misfits) when too few points agree. The caller fills the result's frame, track and state.
   std::optional<ObjectObservation> follow(TrackedObject& object, const SceneMotion& scene,
                                           const SE3& T_world_cam) const;
 
