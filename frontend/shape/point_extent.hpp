@@ -14,11 +14,11 @@ namespace motorcade {
 
 /// Boxes around the points of an object, in its body frame.
 struct PointExtent {
-  /// Without the outermost tenth at each side. Empty where the points are fewer than five.
+  /// The box leaves out the outermost tenth of the points at each side. It is empty if there are fewer than five.
   std::optional<Eigen::AlignedBox3d> box;
-  /// The body surely reaches over it: without the outermost fifth at each side and two standard deviations of the
-  /// points' depth. Its least corner is beyond its most one along axes of which noise leaves nothing. Empty where the
-  /// points are fewer than ten.
+  /// The body surely reaches over this box. It leaves out the outermost fifth at each side, and two standard deviations
+  /// of the points' depth. Where noise leaves nothing of an axis, its least corner is beyond its most one. It is empty
+  /// if there are fewer than ten points.
   std::optional<Eigen::AlignedBox3d> sure;
 };
 PointExtent extentOf(const std::vector<PointMeasurement>& points, const StereoCamera& camera, const SE3& T_body_cam,

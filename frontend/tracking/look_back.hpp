@@ -15,14 +15,10 @@ namespace motorcade {
 /// where it was.
 class LookBack {
  public:
-  /// Frames that an object may take beyond the fewest until it is confirmed, and still be looked for in all frames.
-  /// Each keeps the images of one more pair.
-  static constexpr int kLater = 4;
-
-  /// Looks back `frames` frames at most before an object was spawned. That was `confirmed_after` frames ago, or a few
-  /// more.
+  /// Looks back `frames` frames at most before an object was spawned. It is looked for in all of them if it is
+  /// confirmed up to `confirmed_after` + `kLateFrames` frames after that.
   LookBack(int frames, int confirmed_after, const ObjectMotionEstimator::Params& params, const StereoCamera& camera)
-      : frames_(frames), kept_(frames + confirmed_after + kLater), motion_(params, camera) {}
+      : frames_(frames), kept_(frames + confirmed_after + kLateFrames), motion_(params, camera) {}
 
   /// Puts the observations found before the object's backlog. It ends at the first frame in which the object is not
   /// found, or in which another object was reported where it is.
@@ -51,6 +47,8 @@ class LookBack {
                                            TrackedObject& object, ObjectKinematics& then, MeasuredPoints& later) const;
 
   static bool isTaken(const PastScene& scene, const SE3& T_cam_body, bool small);
+
+  static constexpr int kLateFrames = 4;  // each keeps the images of one more pair
 
   int frames_, kept_;
   ObjectMotionEstimator motion_;

@@ -87,7 +87,7 @@ TEST(LookBack, FindsAnObjectInFramesInWhichNoCornerOnItWasFollowed) {
   }
 }
 
-/// It was spawned two frames before the last, where one is the fewest.
+/// The object is confirmed two frames after it was spawned, where one is the fewest.
 TEST(LookBack, LooksAsFarBackForAnObjectThatIsConfirmedLate) {
   constexpr int kBack = 3;
   BoardDrive drive(0);
