@@ -153,7 +153,7 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
         shareInImages(view.box.box(), view.T_cam_body, camera_) > kWhole || std::ssize(shape.looks) < kFewLooks;
     if (const auto look = whole && !predicted ? measured(*seen, view, shape) : std::nullopt) {
       shape.evidence.add(*look, kLookWeight);
-      shape.looks[frame.head.frame] = {*look, view.T_cam_body};
+      shape.looks[frame.head.frame] = {*look, 0.5 * (view.box.least() + view.box.most()), view.T_cam_body};
     }
     if (object.state != ObjectState::kPredicted) {
       if (!seen->labelled) completeOutline(seen->outline, seen->disparities, view, camera_);
@@ -299,8 +299,8 @@ void ObjectShapes::moveLooks(const FrameEstimate& final) {
     const auto look = shape->second.looks.find(final.head.frame);
     if (look == shape->second.looks.end()) continue;
     const SE3 T_cam_body = final.T_world_cam.inverse() * object.T_world_body;
-    look->second.faces = look->second.faces.shifted((T_cam_body.inverse() * look->second.T_cam_body).translation());
-    look->second.T_cam_body = T_cam_body;
+    const Eigen::Vector3d middle_body = T_cam_body.inverse() * (look->second.T_cam_body * look->second.middle_body);
+    look->second = {look->second.faces.shifted(middle_body - look->second.middle_body), middle_body, T_cam_body};
   }
 }
 

@@ -45,6 +45,7 @@ class ObjectShapes {
   /// final one from then on.
   struct Look {
     FaceInformation faces;
+    Eigen::Vector3d middle_body;  // of the cuboid by this evidence and that before
     SE3 T_cam_body;
   };
   /// Evidence of a frame in which an outline that moves as predicted was found, but none of the object's points.

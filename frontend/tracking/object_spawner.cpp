@@ -47,7 +47,7 @@ std::vector<TrackedObject> ObjectSpawner::operator()(const SceneMotion& scene, c
     if (static_cast<int>(vehicle.points.size()) < min_points_) continue;
     for (const int i : vehicle.points) taken[i] = true;
     spawned.push_back(objectOf(scene, vehicle, T_world_cam));
-    spawned.back().track = TrackId{next_track_++};
+    spawned.back().track = newTrack();
   }
   return spawned;
 }
@@ -63,7 +63,7 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
                                                    const MotionComponent& component, const SE3& T_world_cam) {
   TrackedObject object = objectOf(scene, component, T_world_cam);
   if (!object.born_slow || !haveMoved(object, scene, before)) return std::nullopt;
-  object.track = TrackId{next_track_++};
+  object.track = newTrack();
   return object;
 }
 
@@ -71,7 +71,7 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
 TrackedObject ObjectSpawner::labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover,
                                       const SE3& T_world_cam) {
   TrackedObject object = objectOf(scene, mover.component, T_world_cam);
-  object.track = TrackId{next_track_++};
+  object.track = newTrack();
   object.spawned_at_world -= mover.duration_s * (T_world_cam.rotation() * mover.component.velocity_mps);
   object.born_labelled = true;
   for (int earlier = 1; earlier < mover.frames; ++earlier) object.life.observe();

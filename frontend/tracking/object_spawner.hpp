@@ -30,6 +30,8 @@ class ObjectSpawner {
                                       const MotionComponent& component, const SE3& T_world_cam);
   /// Spawns somebody whom an instance label shows.
   TrackedObject labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover, const SE3& T_world_cam);
+  /// An id that no object has had.
+  TrackId newTrack() { return TrackId{next_track_++}; }
 
  private:
   TrackedObject objectOf(const SceneMotion& scene, const MotionComponent& component, const SE3& T_world_cam) const;

@@ -46,10 +46,12 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   advance(*scene);
   if (scene->head.cause == FrameCause::kUnlinked && !scene->odometry.vehicle) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
+  removeEnded(*measurements);  // they claim no component
   matchComponents(*scene);
   mergeDuplicates(objects_, SeeThrough(*scene, camera_), camera_);
   confirmSure(*scene, *measurements);
   look_back_.remember(scene, T_world_cam_, measurements->objects, objects_);
+  handOverPassed(*measurements);
   removeEnded(*measurements);
   measurements->disparity_offset_px = scene->disparity_offset_px;
   measurements->own_vehicle = scene->own_vehicle;
@@ -106,11 +108,33 @@ bool ObjectTracker::isOutOfReach(const TrackedObject& object) const {
 
 /// True when the body's origin is in the image or just outside, or the middle of its points well inside.
 bool ObjectTracker::mayBeInImage(const TrackedObject& object) const {
-  const auto isInside = [&](const Eigen::Vector3d& p_body, double margin_px) {
-    const auto uvd = camera_.project(object.T_cam_body * p_body);
-    return uvd && camera_.inLeftImage(uvd->x(), uvd->y(), margin_px);
-  };
-  return isInside(Eigen::Vector3d::Zero(), -kOutsideImage_px) || isInside(object.middle(), kInsideImage_px);
+  return isOriginNearImage(object) || isInImage(object.T_cam_body * object.middle(), kInsideImage_px);
+}
+
+bool ObjectTracker::isOriginNearImage(const TrackedObject& object) const {
+  return isInImage(object.T_cam_body.translation(), -kOutsideImage_px);
+}
+
+bool ObjectTracker::isInImage(const Eigen::Vector3d& p_cam, double margin_px) const {
+  const auto uvd = camera_.project(p_cam);
+  return uvd && camera_.inLeftImage(uvd->x(), uvd->y(), margin_px);
+}
+
+/// Begins a new object, with an id of its own, on the points that are left of one whose origin is out of the image. No
+/// vehicle reaches so far from its middle: the points lie on a trailer behind a truck, or on the rear of a body whose
+/// origin was at its front.
+void ObjectTracker::handOverPassed(FrameMeasurements& measurements) {
+  constexpr double kReach_m = 0.5 * kLongestVehicle.length_m;
+  for (TrackedObject& object : objects_) {
+    const Eigen::Vector3d middle_body = object.middle();
+    const bool has_passed = !isOriginNearImage(object) && middle_body.norm() > kReach_m;
+    if (object.life.phase() != Phase::kConfirmed || !has_passed) continue;
+    measurements.ended.push_back(object.track);
+    object.track = spawn_.newTrack();
+    object.changeBodyFrame(SE3(Eigen::Matrix3d::Identity(), middle_body));
+    object.last_middle_body.setZero();
+  }
+  std::ranges::sort(objects_, {}, &TrackedObject::track);
 }
 
 /// Report of a lost object: its predicted pose, as an observation where there is visible evidence of it. Without

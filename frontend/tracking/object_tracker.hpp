@@ -53,6 +53,9 @@ class ObjectTracker {
   void reappear(TrackedObject& object, const MotionComponent& component) const;
   bool isOutOfReach(const TrackedObject& object) const;
   bool mayBeInImage(const TrackedObject& object) const;
+  bool isOriginNearImage(const TrackedObject& object) const;
+  bool isInImage(const Eigen::Vector3d& p_cam, double margin_px) const;
+  void handOverPassed(FrameMeasurements& measurements);
   void removeEnded(FrameMeasurements& measurements);
   void addOtherPoints(const SceneMotion& scene, FrameMeasurements& measurements) const;
 
