@@ -134,11 +134,11 @@ class Crossing {
   FrameEstimate look(ObjectState state) { return look(state, Scene(T_cam_car(next_))); }
   bool born_slow = false;
   const std::vector<ObjectMask>& masks() const { return shaped_->masks; }
-  /// Final estimates; their body frames are where the online ones were, moved by `shift_m` along the body's axes.
-  std::vector<FrameEstimate> finish(const Eigen::Vector3d& shift_m = Eigen::Vector3d::Zero()) {
+  /// Final estimates, with body frames at `T_online_final` in the online ones.
+  std::vector<FrameEstimate> finish(const SE3& T_online_final = {}) {
     for (FrameEstimate& final : finals_) {
       SE3& T_world_body = final.objects[0].T_world_body;
-      T_world_body = T_world_body * shifted(shift_m);
+      T_world_body = T_world_body * T_online_final;
     }
     return shapes_.finish(finals_);
   }
@@ -202,7 +202,19 @@ TEST(ObjectShapes, FinalCuboidsStandWhereTheImagesShowedThem) {
   Crossing crossing(-3);
   for (int frame = 0; frame < 5; ++frame) crossing.look(ObjectState::kMoving);
   const Eigen::Vector3d moved_m = kOrigin_m + shift_m;
-  for (const FrameEstimate& final : crossing.finish(shift_m)) expectTheCar(final.objects[0], 0.3, moved_m);
+  for (const FrameEstimate& final : crossing.finish({Eigen::Matrix3d::Identity(), shift_m}))
+    expectTheCar(final.objects[0], 0.3, moved_m);
+}
+
+TEST(ObjectShapes, FinalCuboidsStandThereWhereTheAxesHaveTurned) {
+  const SE3 T_online_final(expSO3({0, 0, 0.6}), Eigen::Vector3d::Zero());
+  Crossing crossing(-3);
+  for (int frame = 0; frame < 5; ++frame) crossing.look(ObjectState::kMoving);
+  for (const FrameEstimate& final : crossing.finish(T_online_final)) {
+    ASSERT_TRUE(final.objects[0].cuboid);
+    const Eigen::Vector3d middle = T_online_final * final.objects[0].cuboid->center_body + kOrigin_m;
+    EXPECT_LT(middle.head<2>().norm(), 0.3) << "frame " << final.head.frame.value;
+  }
 }
 
 TEST(ObjectShapes, WhatIsHardlySeenStandsBehindItsPoints) {
