@@ -164,13 +164,14 @@ struct ObjectObservation {
 struct Odometry {
   SE3 T_previous_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation
-  /// The same motion by the vehicle's own sensors; empty where they do not tell it, or are not believed. In a row of
-  /// frames without another motion, the covariances of independent steps add up to that of the whole.
-  struct Vehicle {
+  /// The same motion without the images. The vehicle's own sensors tell it, if there are any that are believed. Without
+  /// them, a frame that images do not link is told that a camera stood before. In a row of frames without another
+  /// motion, the covariances of independent steps add up to that of the whole.
+  struct Told {
     SE3 T_previous_now;
     Matrix6d covariance;
   };
-  std::optional<Vehicle> vehicle{};
+  std::optional<Told> told{};
 };
 
 /// The findings about the sensors of the vehicle's own motion.

@@ -36,17 +36,16 @@ CameraRecord CameraChain::add(const FrameMeasurements& m, int seen_again) {
   return camera;
 }
 
-/// Links a camera pose that points hardly tell: by odometry since points were last seen, and by the vehicle's own
-/// sensors since the previous frame, if there are any. Without sensors, unseen frames lie on a steady motion as soon as
-/// it is measured where it led. An unknown motion begins a new part: behind a weak factor the rest of the path would
-/// float.
+/// Links a camera pose that points hardly tell: by odometry since points were last seen, and by what is told without
+/// images since the previous frame. Where nothing is told, unseen frames lie on a steady motion as soon as it is
+/// measured where it led. An unknown motion begins a new part: behind a weak factor the rest of the path would float.
 void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
   const auto& [frame_before, before] = *frames_.rbegin();
   camera.part = before.part;
   if (!last_seen_.frame.valid()) return linkUnseen(m, camera);
   const bool after_unseen = last_seen_.frame != frame_before;
-  const bool told = m.odometry.vehicle && (camera.weak || after_unseen);
-  if (told) addOdometry(m.odometry.vehicle->T_previous_now, m.odometry.vehicle->covariance, before.x, camera.x);
+  const bool told = m.odometry.told && (camera.weak || after_unseen);
+  if (told) addOdometry(m.odometry.told->T_previous_now, m.odometry.told->covariance, before.x, camera.x);
   if (m.head.cause == FrameCause::kUnlinked) {
     if (told) return;
     ++camera.part;
@@ -73,7 +72,7 @@ void CameraChain::link(const FrameMeasurements& m, CameraRecord& camera) {
 /// Links a frame before any points were seen. The world is the first frame with points, so the gauge moves there.
 void CameraChain::linkUnseen(const FrameMeasurements& m, const CameraRecord& camera) {
   const CameraRecord& before = frames_.rbegin()->second;
-  if (const auto& told = m.odometry.vehicle) {
+  if (const auto& told = m.odometry.told) {
     addOdometry(told->T_previous_now, told->covariance, before.x, camera.x);
   } else {
     const std::optional<FactorId> link =

@@ -36,6 +36,9 @@ constexpr double kFarthest_m = 1e5;
 /// Points below which a measured motion is as good as it can be, but not safe.
 constexpr int kFewInliers = 25;
 
+/// Speed below which a camera stands; its noise is a tenth of it.
+constexpr double kStanding_mps = 0.2;
+
 // A motion that the vehicle's sensors contradict is believed when so many points agree on it, and such a share.
 constexpr int kSureInliers = 60;
 constexpr double kSureShare = 0.6;
@@ -43,10 +46,10 @@ constexpr double kSureShare = 0.6;
 /// True when the view moves as vehicles around the camera would make it. They go along with it, so that it seems to
 /// stand, or move off while it stands, so that it seems to go back or aside.
 bool mayBeVehicles(const SE3& seen, const SE3& told, double dt_s) {
-  constexpr double kStanding_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15, kAlong_mps = 1.5;
+  constexpr double kSlow_mps = 0.5, kMoving_mps = 2, kAlongShare = 0.15, kAlong_mps = 1.5;
   const double seen_m = seen.translation().norm(), told_m = told.translation().norm();
   const bool goes_along = told_m > kMoving_mps * dt_s && seen_m < std::min(kAlongShare * told_m, kAlong_mps * dt_s);
-  const bool moves_off = told_m < kStanding_mps * dt_s && seen.translation().z() < 0.5 * seen_m;
+  const bool moves_off = told_m < kSlow_mps * dt_s && seen.translation().z() < 0.5 * seen_m;
   return goes_along || moves_off;
 }
 
@@ -102,6 +105,25 @@ Vector6d CameraOdometry::withheld(Timestamp stamp) const {
   return withheld_s / last_dt_s_ * levelMotion(*last_motion_).log();
 }
 
+/// The motion since the last frame that was seen, if the camera stood when it was measured last. Vehicles that
+/// fill the view may hide that it has started since. The variance of the way ahead grows as if it had.
+CameraOdometry::Told CameraOdometry::standing(Timestamp stamp) const {
+  constexpr int kLeastFrames = 5;
+  constexpr double kLongest_s = 3;  // in which an ordinary start leads 7 m ahead: then nothing is known
+  constexpr double kStart_mps2 = 1.5, kCurvature_1pm = 0.2;  // of an ordinary start, and of the sharpest turn
+  constexpr double kShake_m = 0.01, kShake_rad = 0.002;      // of a car that stands
+  const double now_s = secondsBetween(stood_until_, stamp), then_s = secondsBetween(stood_until_, toldSince(stamp));
+  if (standing_frames_ < kLeastFrames || now_s > kLongest_s) return std::nullopt;
+  const auto ahead_m = [](double t_s) { return 0.5 * kStart_mps2 * t_s * t_s; };
+  const double ahead_m2 = ahead_m(now_s) * ahead_m(now_s) - ahead_m(then_s) * ahead_m(then_s);
+  UncertainMotion motion{SE3{}, Matrix6d::Zero()};
+  motion.covariance.diagonal() << Eigen::Vector3d::Constant(kShake_m * kShake_m),
+      Eigen::Vector3d::Constant(kShake_rad * kShake_rad);
+  motion.covariance(2, 2) += ahead_m2;
+  motion.covariance(4, 4) += kCurvature_1pm * kCurvature_1pm * ahead_m2;
+  return motion;
+}
+
 /// Time of the last frame that was seen, or of the first one of all.
 Timestamp CameraOdometry::toldSince(Timestamp stamp) const {
   return trail_.empty() ? first_stamp_.value_or(stamp) : trail_.newest().stamp;
@@ -113,9 +135,10 @@ bool CameraOdometry::motionKnown(Timestamp stamp) const {
 }
 
 Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
-  const Told told = vehicle_.motion(toldSince(stamp), stamp);
   const bool is_good = motion.status == FrameStatus::kGood;
   const bool is_first = trail_.empty();
+  Told told = vehicle_.motion(toldSince(stamp), stamp);
+  if (!told && !is_good) told = standing(stamp);
   if (!is_first && is_good) rememberMotion(stamp, motion);
   if (motion.disputed) vehicle_.dispute();
   if (!is_good)
@@ -123,7 +146,7 @@ Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
   else if (std::exchange(unlinked_, false))
     ++segment_;
   Odometry odometry = stepTo(stamp, is_first && told ? told->T_then_now : motion.T_seen_now, motion.covariance, told);
-  if (told && (is_first || !is_good)) odometry.covariance = odometry.vehicle->covariance;
+  if (told && (is_first || !is_good)) odometry.covariance = odometry.told->covariance;
   T_seen_before_ = SE3{};
   told_before_.reset();
   trail_.add(stamp, motion.T_seen_now);
@@ -139,6 +162,11 @@ void CameraOdometry::rememberMotion(Timestamp stamp, const CameraMotion& motion)
   last_motion_ = motion.T_seen_now;
   last_dt_s_ = predicted.dt_s;
   measured_at_ = stamp;
+  const bool stands = motion.T_seen_now.translation().norm() < kStanding_mps * predicted.dt_s;
+  if (stands || motion.cause == FrameCause::kNone) {  // a few points on a vehicle do not start the camera
+    standing_frames_ = stands ? standing_frames_ + 1 : 0;
+    stood_until_ = stamp;
+  }
   if (motion.cause == FrameCause::kNone)
     vehicle_.compare(trail_.newest().stamp, stamp, {motion.T_seen_now, motion.covariance});
 }
@@ -156,25 +184,25 @@ Odometry CameraOdometry::passOver(Timestamp stamp) {
                               withheld_now * withheld_now.transpose() - withheld_before * withheld_before.transpose();
   Odometry odometry = stepTo(stamp, T_seen_now, covariance, told);
   odometry.T_previous_now = odometry.T_previous_now.normalized();
-  if (told) odometry.covariance = odometry.vehicle->covariance;
+  if (told) odometry.covariance = odometry.told->covariance;
   T_seen_before_ = T_seen_now;
   if (told) told_before_ = told;
   return odometry;
 }
 
-/// Step from the frame before, seen or not. The sensors' part of it is what they tell since the last frame that was
-/// seen, minus what they told up to the frame before.
+/// Step from the frame before, seen or not. What is told of it is what is told since the last frame that was seen,
+/// minus what was told up to the frame before.
 Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told) {
   last_stamp_ = stamp;
   if (!first_stamp_) first_stamp_ = stamp;
   Odometry odometry{T_seen_before_.inverse() * T_seen_now, covariance};
   if (!told) return odometry;
-  odometry.vehicle = {told->T_then_now, told->covariance};
+  odometry.told = {told->T_then_now, told->covariance};
   if (!told_before_) return odometry;
   const SE3 T_before_now = T_seen_before_.inverse() * told->T_then_now;
   const Matrix6d A = T_before_now.inverse().adjoint();
-  odometry.vehicle = {T_before_now.normalized(),
-                      positivePart(told->covariance - A * told_before_->covariance * A.transpose())};
+  odometry.told = {T_before_now.normalized(),
+                   positivePart(told->covariance - A * told_before_->covariance * A.transpose())};
   return odometry;
 }
 

@@ -63,12 +63,13 @@ class CameraOdometry {
   int segment() const { return segment_; }
 
  private:
-  /// A motion told by the vehicle's sensors since the last frame that was seen.
+  /// A motion since the last frame that was seen, without the images: see Odometry::Told.
   using Told = std::optional<UncertainMotion>;
   double sinceSeen_s(Timestamp stamp) const;
   PredictedMotion predictedByCamera(Timestamp stamp) const;
   Timestamp toldSince(Timestamp stamp) const;
   Vector6d withheld(Timestamp stamp) const;
+  Told standing(Timestamp stamp) const;
   Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
   std::optional<EgoMotion> againstVehicle(std::span<const PoseObservation> observations,
                                           const std::vector<PointLabel>& labels, const FrameHead& head) const;
@@ -80,13 +81,15 @@ class CameraOdometry {
   int segment_ = 0;
   bool unlinked_ = false;                 // since the last frame that was good
   SE3 T_seen_before_;                     // from the last one to the last frame, seen or not
-  Told told_before_;                      // the same as the vehicle's sensors tell it, while frames are not seen
+  Told told_before_;                      // the same without the images, while frames are not seen
   std::optional<Timestamp> first_stamp_;  // of the first frame, seen or not
   std::optional<Timestamp> last_stamp_;   // of the last frame, seen or not
   std::optional<SE3> last_motion_;        // as last measured, from frame to frame
   double last_dt_s_ = 0;
   Timestamp measured_at_;
   int steady_frames_ = 0, ahead_frames_ = 0;  // see PredictedMotion
+  int standing_frames_ = 0;                   // in a row; degraded ones in which it seems to move do not count
+  Timestamp stood_until_;                     // the last one of these
 };
 
 }  // namespace motorcade

@@ -44,7 +44,7 @@ FrameMeasurementsPtr ObjectTracker::operator()(const SceneMotionPtr& scene) {
   measurements->head = scene->head;
   measurements->odometry = scene->odometry;
   advance(*scene);
-  if (scene->head.cause == FrameCause::kUnlinked && !scene->odometry.vehicle) endAll(*measurements);
+  if (scene->head.cause == FrameCause::kUnlinked && !scene->odometry.told) endAll(*measurements);
   for (TrackedObject& object : objects_) follow(object, *scene, *measurements);
   removeEnded(*measurements);  // they claim no component
   matchComponents(*scene);

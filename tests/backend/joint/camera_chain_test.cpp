@@ -51,7 +51,7 @@ FrameMeasurementsPtr measureWithSensors(PointDrive& drive, int frame, const Fram
   FrameMeasurements m = *measureWithDark(drive, frame, dark);
   if (frame == 0) return std::make_shared<const FrameMeasurements>(std::move(m));
   const SE3 T_before_now = drive.truth().camera(frame - 1).inverse() * drive.truth().camera(frame);
-  m.odometry.vehicle = {T_before_now * SE3::exp(Vector6d::Constant(1e-3)), 1e-4 * Matrix6d::Identity()};
+  m.odometry.told = {T_before_now * SE3::exp(Vector6d::Constant(1e-3)), 1e-4 * Matrix6d::Identity()};
   if (frame == dark.end) {
     m.head.status = FrameStatus::kLost;
     m.head.cause = FrameCause::kUnlinked;

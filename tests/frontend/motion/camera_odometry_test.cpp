@@ -143,6 +143,60 @@ TEST(CameraOdometry, WhatIsNotLinkedBeginsANewSegment) {
   EXPECT_EQ(odometry.segment(), 1);
 }
 
+/// Steps of a camera that goes on for six frames, and then sees points of which none was known before.
+std::vector<Odometry> stepsUnlinkedAfter(CameraOdometry& odometry, const SE3& motion, int unlinked) {
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  for (int frame = 1; frame <= 6; ++frame)
+    see(odometry, frameAt(frame, 100 * frame), Views(200, motion, static_cast<std::uint64_t>(frame)));
+  std::vector<Odometry> steps;
+  for (int frame = 7; frame < 7 + unlinked; ++frame) {
+    const StereoFrame pair = frameAt(frame, 100 * frame);
+    const PredictedMotion predicted = odometry.predict(pair.head.stamp);
+    steps.push_back(
+        odometry.add(pair.head.stamp, odometry.measure(pair, kNothingKnown.known, kNothingKnown.observed, predicted)));
+  }
+  return steps;
+}
+
+TEST(CameraOdometry, ACameraThatStoodIsLinkedByThat) {
+  CameraOdometry odometry({}, kRig);
+  double ahead_m2 = 0;
+  for (const Odometry& step : stepsUnlinkedAfter(odometry, SE3{}, 20)) {
+    ASSERT_TRUE(step.told);
+    EXPECT_THAT(step.told->T_previous_now, test::IsNearPose(SE3{}, 0.0));
+    EXPECT_LT(step.covariance(0, 0), 0.02 * 0.02) << "it does not slide";
+    ahead_m2 += step.covariance(2, 2);
+  }
+  EXPECT_NEAR(std::sqrt(ahead_m2), 3, 0.1) << "by 1.5 m/s^2 in two seconds";
+  see(odometry, frameAt(27, 2700), Views(200, SE3{}, 30));
+  EXPECT_EQ(odometry.segment(), 0);
+}
+
+TEST(CameraOdometry, WhereACameraIsThatStoodLongAgoNobodyKnows) {
+  CameraOdometry odometry({}, kRig);
+  const auto steps = stepsUnlinkedAfter(odometry, SE3{}, 40);
+  EXPECT_TRUE(steps[29].told);
+  EXPECT_FALSE(steps[30].told);
+  see(odometry, frameAt(47, 4700), Views(200, SE3{}, 30));
+  EXPECT_EQ(odometry.segment(), 1);
+}
+
+TEST(CameraOdometry, AFewPointsThatMoveDoNotStartACamera) {
+  CameraOdometry odometry({}, kRig);
+  const SE3 crept(Eigen::Matrix3d::Identity(), {0, 0, 0.05});
+  stepsUnlinkedAfter(odometry, SE3{}, 0);
+  EXPECT_EQ(see(odometry, frameAt(7, 700), Views(22, crept, 8)).cause, FrameCause::kFewPoints);
+  CameraMotion lost;
+  lost.status = FrameStatus::kLost;
+  EXPECT_TRUE(odometry.add({800'000'000}, lost).told);
+}
+
+TEST(CameraOdometry, ACameraThatCreptIsNotLinkedByStanding) {
+  CameraOdometry odometry({}, kRig);
+  const SE3 crept(Eigen::Matrix3d::Identity(), {0, 0, 0.05});
+  EXPECT_FALSE(stepsUnlinkedAfter(odometry, crept, 1)[0].told);
+}
+
 TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);

@@ -177,10 +177,10 @@ TEST_F(InTheDark, StepsAddUpToWhatIsKnownOfTheWhole) {
   SE3 T_seen_now;
   Matrix6d sum = Matrix6d::Zero();
   for (const Odometry& step : steps_) {
-    ASSERT_TRUE(step.vehicle);
-    const Matrix6d A = step.vehicle->T_previous_now.inverse().adjoint();
-    sum = A * sum * A.transpose() + step.vehicle->covariance;
-    T_seen_now = T_seen_now * step.vehicle->T_previous_now;
+    ASSERT_TRUE(step.told);
+    const Matrix6d A = step.told->T_previous_now.inverse().adjoint();
+    sum = A * sum * A.transpose() + step.told->covariance;
+    T_seen_now = T_seen_now * step.told->T_previous_now;
   }
   EXPECT_THAT(T_seen_now, test::IsNearPose(whole.T_seen_now, 1e-6));
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(sum(i, i) / (*whole.by_vehicle)(i, i)), 1, 0.15) << i;
@@ -192,7 +192,7 @@ TEST_F(InTheDark, WhereSensorsFallSilentTheCameraGoesOnFromWhereTheyLed) {
   drive(samples);
   const double way_m = steppedTo(10).translation().norm();
   EXPECT_NEAR(way_m, drive_.motion(kSeen - 1, kSeen + 9).translation().norm(), 0.3);
-  EXPECT_FALSE(steps_.back().vehicle);
+  EXPECT_FALSE(steps_.back().told);
   EXPECT_LT((steppedTo(kDark).translation() - steppedTo(12).translation()).norm(), 1) << "and stands";
 }
 
@@ -202,20 +202,20 @@ TEST_F(InTheDark, AfterAPauseOfTheSensorsTheCameraIsWhereTheyTell) {
     return sample.stamp > SimulatedVehicle::stampOf(kSeen + 10) && sample.stamp < SimulatedVehicle::stampOf(kSeen + 18);
   });
   drive(samples);
-  EXPECT_FALSE(steps_[15].vehicle);
-  ASSERT_TRUE(steps_[20].vehicle);
+  EXPECT_FALSE(steps_[15].told);
+  ASSERT_TRUE(steps_[20].told);
   EXPECT_LT((steppedTo(25).translation() - drive_.motion(kSeen - 1, kSeen + 24).translation()).norm(), 1.0);
   SE3 T_seen_now;
   for (int i = 0; i < 25; ++i) {
     const Odometry& step = steps_[static_cast<std::size_t>(i)];
-    T_seen_now = T_seen_now * (step.vehicle ? step.vehicle->T_previous_now : step.T_previous_now);
+    T_seen_now = T_seen_now * (step.told ? step.told->T_previous_now : step.T_previous_now);
   }
   EXPECT_THAT(T_seen_now, test::IsNearPose(steppedTo(25), 1e-6));
 }
 
 TEST_F(InTheDark, WithoutSensorsItIsTakenToStandAfterASecond) {
   drive({});
-  EXPECT_FALSE(steps_.front().vehicle);
+  EXPECT_FALSE(steps_.front().told);
   EXPECT_LT(steppedTo(kDark).translation().norm(), 20);
 }
 
@@ -258,7 +258,7 @@ TEST(CameraOdometryWithSensors, WhatIsNotLinkedByImagesStaysInTheSegment) {
   const CameraMotion unlinked = odometry.measure(frame, {}, {}, predicted);
   EXPECT_EQ(unlinked.cause, FrameCause::kUnlinked);
   const Odometry step = odometry.add(drive.stampOf(10), unlinked);
-  ASSERT_TRUE(step.vehicle);
+  ASSERT_TRUE(step.told);
   EXPECT_LT((step.T_previous_now.translation() - drive.motion(0, 10).translation()).norm(), 1.0);
   odometry.add(drive.stampOf(11), {.T_seen_now = drive.motion(10, 11), .inliers = {}});
   EXPECT_EQ(odometry.segment(), 0);

@@ -14,7 +14,7 @@ namespace motorcade {
 namespace {
 
 /// The number of objects that a lead car becomes where images do not tell the camera's motion in one frame.
-std::size_t objectsAcrossAnUnlinkedFrame(const std::optional<Odometry::Vehicle>& told) {
+std::size_t objectsAcrossAnUnlinkedFrame(const std::optional<Odometry::Told>& told) {
   test::SimulatedTraffic traffic({{.x_m = 0.5, .z_m = 14, .speed_mps = 10}}, 10, 1, 0.003);
   ObjectTracker tracker({}, test::kRig);
   std::set<TrackId> ids;
@@ -23,7 +23,7 @@ std::size_t objectsAcrossAnUnlinkedFrame(const std::optional<Odometry::Vehicle>&
     if (frame == 20) {
       scene.head.status = FrameStatus::kLost;
       scene.head.cause = FrameCause::kUnlinked;
-      scene.odometry.vehicle = told;
+      scene.odometry.told = told;
     }
     const auto measurements = tracker(std::make_shared<const SceneMotion>(scene));
     for (const auto& object : measurements->objects) ids.insert(object.track);
@@ -33,7 +33,7 @@ std::size_t objectsAcrossAnUnlinkedFrame(const std::optional<Odometry::Vehicle>&
 
 TEST(ObjectTrackerInAGap, ObjectsEndWhereNobodyKnowsTheCamerasMotionAndGoOnWhereSensorsTellIt) {
   EXPECT_EQ(objectsAcrossAnUnlinkedFrame(std::nullopt), 2U);
-  EXPECT_EQ(objectsAcrossAnUnlinkedFrame(Odometry::Vehicle{SE3{}, Matrix6d::Identity()}), 1U);
+  EXPECT_EQ(objectsAcrossAnUnlinkedFrame(Odometry::Told{SE3{}, Matrix6d::Identity()}), 1U);
 }
 
 }  // namespace
