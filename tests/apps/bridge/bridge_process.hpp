@@ -21,6 +21,7 @@
 
 #include "core/se3.hpp"
 #include "motorcade/motorcade.hpp"
+#include "tests/apps/bridge/claimed_domain.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -32,9 +33,6 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 inline constexpr const char* kDrive = MOTORCADE_TINY_SEQUENCE;
-
-/// A domain that others hardly use, and whose ports lie below those that the system assigns.
-inline int unlikelyDomain() { return 60 + ::getpid() % 40; }
 
 /// A program that is running; it is killed at the end if it still does.
 class Process {
@@ -79,6 +77,8 @@ class Process {
 };
 
 class Bridge : public testing::Test {
+  const ClaimedDomain claimed_;
+
  protected:
   Process bridge(const std::vector<std::string>& options, const std::string& drive = kDrive) const {
     std::vector<std::string> words{MOTORCADE_PROGRAM, "bridge", drive, "--domain", std::to_string(domain_)};
@@ -87,7 +87,7 @@ class Bridge : public testing::Test {
   }
   Process subscriber() const { return {{BRIDGE_SUBSCRIBER, std::to_string(domain_), "60"}, file("subscriber")}; }
 
-  const int domain_ = unlikelyDomain();
+  const int domain_ = claimed_.number();
 
  private:
   static fs::path file(const std::string& name) {

@@ -3,10 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <sensor_msgs.h>
-#include <unistd.h>
 
 #include "apps/bridge/dds/dds_values.hpp"
 #include "tests/apps/bridge/bridged_cameras.hpp"
+#include "tests/apps/bridge/claimed_domain.hpp"
 #include "tests/apps/bridge/wire_bytes.hpp"
 
 /// Compares the bytes of cameras' messages with ROS 2's definitions, as bridge_wire_test.cpp does for results, and
@@ -25,8 +25,10 @@ Cdr startedByCamera() {
 }
 
 class BridgeWireImages : public testing::Test {
+  const ClaimedDomain claimed_;
+
  protected:
-  const int domain_ = 60 + ::getpid() % 40;
+  const int domain_ = claimed_.number();
 };
 
 TEST_F(BridgeWireImages, Image) {

@@ -12,9 +12,9 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include "apps/bridge/dds/dds_publisher.hpp"
+#include "tests/apps/bridge/claimed_domain.hpp"
 
 /// Messages as bytes: those on the wire, and those that are written down by hand.
 namespace motorcade::test {
@@ -97,8 +97,10 @@ class RawReader {
 };
 
 class BridgeWire : public testing::Test {
+  const ClaimedDomain claimed_;
+
  protected:
-  const int domain_ = 60 + ::getpid() % 40;
+  const int domain_ = claimed_.number();
   DdsPublisher publisher_{{.domain = domain_}, topicsOf(std::string(kDefaultTopics) + ",tf")};
 };
 
