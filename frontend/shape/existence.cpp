@@ -21,7 +21,7 @@ constexpr double kMostByVerdicts = 6;
 constexpr double kDoubt = 2.2;          // log odds against a slow birth, until the image tells more
 constexpr double kSure = 2.5;           // sum of verdicts from which on a body was surely seen: one clear verdict
 constexpr double kSlip = 1.5;           // log odds against a track's slipping off its body: one in five does
-constexpr std::size_t kMostSums = 100;  // that are kept: more than an object has frames in the back-end's window
+constexpr std::size_t kMostSums = 100;  // that are kept: the oldest of them counts for all frames before it
 
 /// Shares of a verdict among those that tracks get, counted once while it lasts: for tracks whose rows match labels
 /// that move, and for tracks whose rows match none.
