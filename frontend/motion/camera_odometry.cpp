@@ -38,6 +38,7 @@ constexpr int kFewInliers = 25;
 
 /// Speed below which a camera stands; its noise is a tenth of it.
 constexpr double kStanding_mps = 0.2;
+constexpr int kStandingFrames = 5;  // in a row, after which it is believed
 
 // A motion that the vehicle's sensors contradict is believed when so many points agree on it, and such a share.
 constexpr int kSureInliers = 60;
@@ -60,6 +61,24 @@ CameraMotion unlinked(const PredictedMotion& predicted, std::size_t observations
           .covariance = predicted.by_vehicle.value_or(unknownMotionCovariance(predicted.dt_s)),
           .disputed = is_disputed,
           .inliers = std::vector<bool>(observations, false)};
+}
+
+/// Growth of the variance of a way, or an angle, from one moment to another after it was measured, by an unknown
+/// constant acceleration.
+double accelerated2(double sigma_per_s2, double then_s, double now_s) {
+  const auto sigma = [&](double t_s) { return 0.5 * sigma_per_s2 * t_s * t_s; };
+  return sigma(now_s) * sigma(now_s) - sigma(then_s) * sigma(then_s);
+}
+
+/// A motion of a car with these variances of its way ahead and its yaw, about which it shakes.
+UncertainMotion drivenOn(const SE3& motion, double ahead_m2, double yaw_rad2) {
+  constexpr double kShake_m = 0.01, kShake_rad = 0.002;
+  UncertainMotion driven{motion, Matrix6d::Zero()};
+  driven.covariance.diagonal() << Eigen::Vector3d::Constant(kShake_m * kShake_m),
+      Eigen::Vector3d::Constant(kShake_rad * kShake_rad);
+  driven.covariance(2, 2) += ahead_m2;
+  driven.covariance(4, 4) += yaw_rad2;
+  return driven;
 }
 
 /// Positive part of a difference of covariances, which is that of a step but for rounding and what frames share.
@@ -108,20 +127,23 @@ Vector6d CameraOdometry::withheld(Timestamp stamp) const {
 /// The motion since the last frame that was seen, if the camera stood when it was measured last. Vehicles that
 /// fill the view may hide that it has started since. The variance of the way ahead grows as if it had.
 CameraOdometry::Told CameraOdometry::standing(Timestamp stamp) const {
-  constexpr int kLeastFrames = 5;
   constexpr double kLongest_s = 3;  // in which an ordinary start leads 7 m ahead: then nothing is known
   constexpr double kStart_mps2 = 1.5, kCurvature_1pm = 0.2;  // of an ordinary start, and of the sharpest turn
-  constexpr double kShake_m = 0.01, kShake_rad = 0.002;      // of a car that stands
   const double now_s = secondsBetween(stood_until_, stamp), then_s = secondsBetween(stood_until_, toldSince(stamp));
-  if (standing_frames_ < kLeastFrames || now_s > kLongest_s) return std::nullopt;
-  const auto ahead_m = [](double t_s) { return 0.5 * kStart_mps2 * t_s * t_s; };
-  const double ahead_m2 = ahead_m(now_s) * ahead_m(now_s) - ahead_m(then_s) * ahead_m(then_s);
-  UncertainMotion motion{SE3{}, Matrix6d::Zero()};
-  motion.covariance.diagonal() << Eigen::Vector3d::Constant(kShake_m * kShake_m),
-      Eigen::Vector3d::Constant(kShake_rad * kShake_rad);
-  motion.covariance(2, 2) += ahead_m2;
-  motion.covariance(4, 4) += kCurvature_1pm * kCurvature_1pm * ahead_m2;
-  return motion;
+  if (now_s > kLongest_s) return std::nullopt;
+  const double ahead_m2 = accelerated2(kStart_mps2, then_s, now_s);
+  return drivenOn(SE3{}, ahead_m2, kCurvature_1pm * kCurvature_1pm * ahead_m2);
+}
+
+/// The motion since the last frame that was seen, if a steady one was measured just before.
+CameraOdometry::Told CameraOdometry::steady(Timestamp stamp) const {
+  constexpr int kLeastFrames = 3;
+  constexpr double kLongest_s = 0.5;
+  constexpr double kBrake_mps2 = 4, kSwing_radps2 = 0.5;  // of a car that brakes, and that begins to turn
+  const double now_s = secondsBetween(measured_at_, stamp), then_s = secondsBetween(measured_at_, toldSince(stamp));
+  if (steady_frames_ < kLeastFrames || now_s > kLongest_s) return std::nullopt;
+  return drivenOn(predictedByCamera(stamp).T_seen_now, accelerated2(kBrake_mps2, then_s, now_s),
+                  accelerated2(kSwing_radps2, then_s, now_s));
 }
 
 /// Time of the last frame that was seen, or of the first one of all.
@@ -138,7 +160,7 @@ Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
   const bool is_good = motion.status == FrameStatus::kGood;
   const bool is_first = trail_.empty();
   Told told = vehicle_.motion(toldSince(stamp), stamp);
-  if (!told && !is_good) told = standing(stamp);
+  if (!told && !is_good) told = standing_frames_ >= kStandingFrames ? standing(stamp) : steady(stamp);
   if (!is_first && is_good) rememberMotion(stamp, motion);
   if (motion.disputed) vehicle_.dispute();
   if (!is_good)

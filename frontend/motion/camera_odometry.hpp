@@ -70,6 +70,7 @@ class CameraOdometry {
   Timestamp toldSince(Timestamp stamp) const;
   Vector6d withheld(Timestamp stamp) const;
   Told standing(Timestamp stamp) const;
+  Told steady(Timestamp stamp) const;
   Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
   std::optional<EgoMotion> againstVehicle(std::span<const PoseObservation> observations,
                                           const std::vector<PointLabel>& labels, const FrameHead& head) const;

@@ -64,6 +64,10 @@ constexpr double kMaxSpeedSigma_mps = 4.0;   // points less certain than this ar
 constexpr int kPoolingIterations = 3;    // from the median to the weighted mean: the weights hardly change after two
 constexpr double kNoInformation = 1e-6;  // keeps sums of information regular [s^2/m^2]
 
+// Share of the tolerances and of the largest gap within which two points may be on one vehicle: first all of it, and
+// half where that joins several.
+constexpr double kWhole = 1, kHalved = 0.5;
+
 constexpr double kStaticSigma_mps = 1.0;  // a component is static when its velocity is known this well
 constexpr double kMaxHeight_m = 2.5;      // of its lowest point above the road: what is all higher is leaves and signs
 constexpr double kMaxVerticalRatio = 0.35;  // vertical part of a vehicle's velocity: roads are less steep
@@ -71,6 +75,12 @@ constexpr double kNoiseSigmas = 2;          // of room for noise where a size or
 
 Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
 Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
+
+/// Speed in standard deviations: the Mahalanobis distance from rest.
+double significanceOf(const MotionComponent& component) {
+  const Eigen::Vector3d& v = component.velocity_mps;
+  return std::sqrt(v.dot(component.velocity_covariance.inverse() * v));
+}
 
 struct PooledVelocity {
   Eigen::Vector3d velocity_mps;
@@ -112,17 +122,17 @@ bool MotionSegmenter::isVertex(const ScenePoint& point) const {
   return std::sqrt(velocityCovariance(point).trace()) < kMaxSpeedSigma_mps;
 }
 
-bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b) const {
+bool MotionSegmenter::belongTogether(const ScenePoint& a, const ScenePoint& b, double slack) const {
   const Eigen::Vector3d dv = a.flow->velocity_mps - b.flow->velocity_mps, dp = a.flow->p_cam - b.flow->p_cam;
-  const double distance = dp.norm(),
-               tolerance_mps = kSpeedTolerance_mps + kMaxTurnRate_radps * std::min(distance, params_.max_gap_m);
+  const double distance = dp.norm(), gap_m = slack * params_.max_gap_m,
+               tolerance_mps = slack * (kSpeedTolerance_mps + kMaxTurnRate_radps * std::min(distance, gap_m));
   Eigen::Matrix3d C = velocityCovariance(a) + velocityCovariance(b);
   C.diagonal().array() += tolerance_mps * tolerance_mps;
   if (dv.dot(C.inverse() * dv) > params_.max_flow_chi2) return false;
-  if (distance < params_.max_gap_m) return true;
+  if (distance < gap_m) return true;
   const Eigen::Vector3d direction = dp / distance;
   const double sigma_m = std::sqrt(direction.dot((positionCovariance(a) + positionCovariance(b)) * direction));
-  return distance < params_.max_gap_m + kNoiseSigmas * sigma_m;
+  return distance < gap_m + slack * kNoiseSigmas * sigma_m;
 }
 
 std::vector<MotionComponent> MotionSegmenter::operator()(std::vector<ScenePoint>& points,
@@ -132,29 +142,33 @@ std::vector<MotionComponent> MotionSegmenter::operator()(std::vector<ScenePoint>
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(points.size()); ++i)
     if (isVertex(points[i])) vertices.push_back(i);
-  std::vector<MotionComponent> components = split(scene, vertices, [&](int i, int j) {
-    return violates_geometry[i] == violates_geometry[j] && belongTogether(points[i], points[j]);
+  std::vector<MotionComponent> components = split(scene, vertices, [&](int i, int j, double slack) {
+    return violates_geometry[i] == violates_geometry[j] && belongTogether(points[i], points[j], slack);
   });
   const auto settled = [&](int i) {
     return points[i].label != PointLabel::kStatic || !movesSurely(camera_, *points[i].flow, camera_speed_mps);
   };
   std::erase_if(vertices, settled);
-  std::ranges::move(split(scene, vertices, [&](int i, int j) { return belongTogether(points[i], points[j]); }),
-                    std::back_inserter(components));
+  const auto alike = [&](int i, int j, double slack) { return belongTogether(points[i], points[j], slack); };
+  std::ranges::move(split(scene, vertices, alike), std::back_inserter(components));
   return components;
 }
 
 /// Labels the components of these vertices, and returns those that are not static.
 std::vector<MotionComponent> MotionSegmenter::split(const Scene& scene, std::span<const int> vertices,
-                                                    const std::function<bool(int, int)>& belong_together) const {
+                                                    const Bond& belong_together, double slack) const {
   std::vector<Eigen::Vector2d> pixels;
   for (const int i : vertices) pixels.emplace_back(scene.points[i].uvd_px.head<2>());
   std::vector<MotionComponent> components;
-  const auto together = [&](int a, int b) { return belong_together(vertices[a], vertices[b]); };
+  const auto together = [&](int a, int b) { return belong_together(vertices[a], vertices[b], slack); };
   for (auto& members : cutDelaunayComponents(pixels, together)) {
     for (int& i : members) i = vertices[i];
     MotionComponent component = describe(std::move(members), scene.points, scene.camera_speed_mps);
     component.label = decide(component, scene.points, scene.ground);
+    if (slack == kWhole && isQueue(component, scene.points)) {
+      std::ranges::move(split(scene, component.points, belong_together, kHalved), std::back_inserter(components));
+      continue;
+    }
     for (const int i : component.points) scene.points[i].label = component.label;
     if (component.label != PointLabel::kStatic) components.push_back(std::move(component));
   }
@@ -178,28 +192,38 @@ PointLabel MotionSegmenter::decide(const MotionComponent& component, const std::
                                    const GroundPlane& ground) const {
   if (static_cast<int>(component.points.size()) < params_.min_points) return PointLabel::kUnknown;
   const Eigen::Vector3d& v = component.velocity_mps;
-  const double significance = std::sqrt(v.dot(component.velocity_covariance.inverse() * v));
   const double speed_sigma = std::sqrt(component.velocity_covariance.trace());
-  if (significance < params_.min_significance || v.norm() < params_.min_speed_mps)
+  if (significanceOf(component) < params_.min_significance || v.norm() < params_.min_speed_mps)
     return speed_sigma < kStaticSigma_mps ? PointLabel::kStatic : PointLabel::kUnknown;
   return isLikeAVehicle(component, points, ground) ? PointLabel::kMoving : PointLabel::kUnknown;
+}
+
+/// True for vehicles that are one component although they move apart: those in a queue or abreast of one another,
+/// nearer than the largest gap on one. It must move far more surely than a vehicle: houses may seem to move when
+/// calibration or odometry are wrong, and half of a house is no vehicle.
+bool MotionSegmenter::isQueue(const MotionComponent& component, const std::vector<ScenePoint>& points) const {
+  constexpr double kMoreSurely = 4;
+  return component.label == PointLabel::kUnknown && isTooLarge(component, points) &&
+         significanceOf(component) > kMoreSurely * params_.min_significance;
 }
 
 /// True when it is not too long, not up in the air, and not going up or down.
 bool MotionSegmenter::isLikeAVehicle(const MotionComponent& component, const std::vector<ScenePoint>& points,
                                      const GroundPlane& ground) const {
-  Eigen::AlignedBox3d box;
   double lowest_m = std::numeric_limits<double>::infinity();
-  for (const int i : component.points) {
-    box.extend(points[i].flow->p_cam);
-    lowest_m = std::min(lowest_m, ground.heightOf_m(points[i].flow->p_cam));
-  }
+  for (const int i : component.points) lowest_m = std::min(lowest_m, ground.heightOf_m(points[i].flow->p_cam));
   const Eigen::Vector3d& v = component.velocity_mps;
-  const double depth_noise_m = kNoiseSigmas * std::sqrt(positionCovariance(points[component.points.front()]).trace());
   const double vertical_mps = std::abs(v.dot(ground.normal_cam));
   const double vertical_sigma = std::sqrt(ground.normal_cam.dot(component.velocity_covariance * ground.normal_cam));
-  return box.diagonal().norm() < params_.max_extent_m + depth_noise_m && lowest_m < kMaxHeight_m &&
+  return !isTooLarge(component, points) && lowest_m < kMaxHeight_m &&
          vertical_mps < kMaxVerticalRatio * v.norm() + kNoiseSigmas * vertical_sigma;
+}
+
+bool MotionSegmenter::isTooLarge(const MotionComponent& component, const std::vector<ScenePoint>& points) const {
+  Eigen::AlignedBox3d box;
+  for (const int i : component.points) box.extend(points[i].flow->p_cam);
+  const double depth_noise_m = kNoiseSigmas * std::sqrt(positionCovariance(points[component.points.front()]).trace());
+  return box.diagonal().norm() >= params_.max_extent_m + depth_noise_m;
 }
 
 std::vector<Parameter> parametersOf(MotionSegmenter::Params& params) {

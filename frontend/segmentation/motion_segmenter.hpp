@@ -40,8 +40,9 @@ class MotionSegmenter {
   std::vector<MotionComponent> operator()(std::vector<ScenePoint>& points, const std::vector<bool>& violates_geometry,
                                           const GroundPlane& ground, double camera_speed_mps) const;
 
-  /// The edge predicate: true when two points may belong to one rigid body.
-  bool belongTogether(const ScenePoint& a, const ScenePoint& b) const;
+  /// The edge predicate: true when two points may belong to one rigid body. `slack` scales the tolerance of velocities
+  /// and the largest gap.
+  bool belongTogether(const ScenePoint& a, const ScenePoint& b, double slack = 1) const;
 
   /// True when the scene flow of `point` is certain enough to be a vertex of the graph.
   bool isVertex(const ScenePoint& point) const;
@@ -53,12 +54,15 @@ class MotionSegmenter {
     const GroundPlane& ground;
     double camera_speed_mps;
   };
-  std::vector<MotionComponent> split(const Scene& scene, std::span<const int> vertices,
-                                     const std::function<bool(int, int)>& belong_together) const;
+  using Bond = std::function<bool(int, int, double slack)>;
+  std::vector<MotionComponent> split(const Scene& scene, std::span<const int> vertices, const Bond& belong_together,
+                                     double slack = 1) const;
   MotionComponent describe(std::vector<int> members, const std::vector<ScenePoint>& points,
                            double camera_speed_mps) const;
   PointLabel decide(const MotionComponent& component, const std::vector<ScenePoint>& points,
                     const GroundPlane& ground) const;
+  bool isQueue(const MotionComponent& component, const std::vector<ScenePoint>& points) const;
+  bool isTooLarge(const MotionComponent& component, const std::vector<ScenePoint>& points) const;
   bool isLikeAVehicle(const MotionComponent& component, const std::vector<ScenePoint>& points,
                       const GroundPlane& ground) const;
 

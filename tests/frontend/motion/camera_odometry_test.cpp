@@ -191,10 +191,28 @@ TEST(CameraOdometry, AFewPointsThatMoveDoNotStartACamera) {
   EXPECT_TRUE(odometry.add({800'000'000}, lost).told);
 }
 
-TEST(CameraOdometry, ACameraThatCreptIsNotLinkedByStanding) {
+TEST(CameraOdometry, ASteadyMotionLinksForHalfASecond) {
   CameraOdometry odometry({}, kRig);
-  const SE3 crept(Eigen::Matrix3d::Identity(), {0, 0, 0.05});
-  EXPECT_FALSE(stepsUnlinkedAfter(odometry, crept, 1)[0].told);
+  const auto steps = stepsUnlinkedAfter(odometry, kOdometryStep, 6);
+  double ahead_m2 = 0;
+  for (int frame = 0; frame < 5; ++frame) {
+    ASSERT_TRUE(steps[frame].told) << frame;
+    EXPECT_THAT(steps[frame].told->T_previous_now, test::IsNearPose(kOdometryStep, 0.02)) << frame;
+    ahead_m2 += steps[frame].covariance(2, 2);
+  }
+  EXPECT_NEAR(std::sqrt(ahead_m2), 0.5, 0.03) << "by braking with 4 m/s^2";
+  EXPECT_FALSE(steps[5].told);
+  see(odometry, frameAt(13, 1300), Views(200, kOdometryStep, 30));
+  EXPECT_EQ(odometry.segment(), 1);
+}
+
+TEST(CameraOdometry, AMotionThatIsNotSteadyLinksNothing) {
+  CameraOdometry odometry({}, kRig);
+  see(odometry, frameAt(0, 0), kNothingKnown);
+  see(odometry, frameAt(1, 100), Views(200, kOdometryStep, 1));
+  CameraMotion lost;
+  lost.status = FrameStatus::kLost;
+  EXPECT_FALSE(odometry.add({200'000'000}, lost).told);
 }
 
 TEST(CameraOdometry, NoMotionIsTakenToGoOnForLong) {

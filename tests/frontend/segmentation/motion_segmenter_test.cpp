@@ -223,6 +223,34 @@ TEST(MotionSegmenter, CarsOfEqualVelocityFiveMetersApartAreTwo) {
   EXPECT_EQ(street.share(right, PointLabel::kMoving), 1);
 }
 
+/// A lead car beside the end of a long truck: their points are nearer than the largest gap on one vehicle, and their
+/// velocities differ by less than a tight turn explains.
+TEST(MotionSegmenter, VehiclesOfAQueueAreToldApart) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Street street(seed);
+    const int car = street.add({0.4, 0.8, 10}, kCar, {0, 0, 9}, 20, 0.15),
+              truck = street.add({2.4, 0, 17}, {0.2, 1.4, 6.5}, {0, 0, 6.3}, 300, 0.15);
+    int of_car = 0, moving = 0;
+    for (const MotionComponent& component : street.components()) {
+      if (component.label != PointLabel::kMoving) continue;
+      ++moving;
+      of_car += street.ownerOf(component).first == car;
+    }
+    EXPECT_GT(street.share(car, PointLabel::kMoving), 0.7) << "seed " << seed;
+    EXPECT_GT(street.share(truck, PointLabel::kMoving), 0.8) << "seed " << seed;
+    EXPECT_EQ(of_car, 1) << "seed " << seed;
+    EXPECT_LE(moving, 3) << "seed " << seed;
+  }
+}
+
+/// A long house that seems to move, by a wrong turn of the camera say, and not by its noise.
+TEST(MotionSegmenter, HalfOfAHouseIsNoVehicle) {
+  Street street(5);
+  const int house = street.add({-6, 0, 20}, {0.2, 1.5, 12}, {0, 0, 3.5}, 150);
+  street.components();
+  EXPECT_EQ(street.share(house, PointLabel::kMoving), 0);
+}
+
 TEST(MotionSegmenter, WhatFliesOrRisesIsNoVehicle) {
   Street street(4);
   const int bird = street.add({0, -5, 14}, {0.3, 0.2, 0.3}, {3, 0, 5}, 8),
