@@ -164,9 +164,9 @@ struct ObjectObservation {
 struct Odometry {
   SE3 T_previous_now;
   Matrix6d covariance = Matrix6d::Identity();  // right perturbation
-  /// The same motion without the images. The vehicle's own sensors tell it, if there are any that are believed. Without
-  /// them, a frame that images do not link is told that a camera stood before. In a row of frames without another
-  /// motion, the covariances of independent steps add up to that of the whole.
+  /// The same motion without the images: by the vehicle's own sensors, if there are any that are believed. Else a frame
+  /// that images do not link has the motion of a camera that stood, or drove steadily, just before. In a row of frames
+  /// without another motion, the covariances of independent steps add up to that of the whole.
   struct Told {
     SE3 T_previous_now;
     Matrix6d covariance;

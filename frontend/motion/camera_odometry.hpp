@@ -89,7 +89,7 @@ class CameraOdometry {
   double last_dt_s_ = 0;
   Timestamp measured_at_;
   int steady_frames_ = 0, ahead_frames_ = 0;  // see PredictedMotion
-  int standing_frames_ = 0;                   // in a row; degraded ones in which it seems to move do not count
+  int standing_frames_ = 0;                   // in a row; degraded ones in which it seems to move are passed over
   Timestamp stood_until_;                     // the last one of these
 };
 
