@@ -37,6 +37,15 @@ constexpr std::size_t kUntested = 3;
 /// Shares of such tracks. Those of others are .98 and .66, which says little and is left out.
 constexpr VerdictShare kUntestedShare{0.02, 0.34};
 
+/// Frames in which images may tell, and speed, from and up to which it counts that no image ever told. A body that is
+/// so slow and stays so long would be near enough.
+constexpr int kFramesToTell = 6;
+constexpr double kWalk_mps = 2;
+/// Shares of tracks of which none told: none of 101 bodies, and 15 of 43 of nothing.
+constexpr VerdictShare kNeverToldShare{0.01, 0.35};
+
+double logRatio(const VerdictShare& share) { return logarithm(share.of_body / share.of_nothing); }
+
 /// Log likelihood ratio of a speed among those of traffic against an error of something at rest: both are Gaussian.
 double speedEvidence(double speed_mps, double sigma_mps) {
   const double misfit_at_rest = speed_mps / sigma_mps, spread = kTrafficSpeed_mps / sigma_mps;
@@ -74,11 +83,15 @@ void Existence::addSettledSpeed(double speed_mps, double sigma_mps) {
 
 /// Adds a verdict. Successive frames show much the same: the n-th with one verdict counts as a part of 1 / n.
 void Existence::addVerdict(FrameId frame, MotionVerdict verdict) {
-  if (verdict == MotionVerdict::kUntold) return;
+  if (verdict == MotionVerdict::kUntold) {
+    ++untold_;
+    return;
+  }
+  told_ = true;
   repeated_ = verdict == last_ ? repeated_ + 1 : 1;
   last_ = verdict;
   const VerdictShare& share = kShares[static_cast<std::size_t>(verdict)];
-  verdicts_ += logarithm(share.of_body / share.of_nothing) / repeated_;
+  verdicts_ += logRatio(share) / repeated_;
   verdicts_ = std::clamp(verdicts_, -kMostByVerdicts, kMostByVerdicts);
   while (!largest_.empty() && largest_.back().verdicts <= verdicts_) largest_.pop_back();
   largest_.push_back({frame, verdicts_});
@@ -89,11 +102,16 @@ void Existence::addFollowed(std::size_t points) { most_followed_ = std::max(most
 
 double Existence::followedEvidence() const {
   if (!most_followed_ || *most_followed_ > kUntested) return 0;
-  return logarithm(kUntestedShare.of_body / kUntestedShare.of_nothing);
+  return logRatio(kUntestedShare);
+}
+
+double Existence::untoldEvidence() const {
+  const bool is_slow = std::max(recent_speed_, settled_speed_) < kMostPerSpeed * kWalk_mps;
+  return is_slow && !told_ && untold_ >= kFramesToTell ? logRatio(kNeverToldShare) : 0;
 }
 
 double Existence::probability() const {
-  return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_ + followedEvidence());
+  return probabilityOf(std::max(recent_speed_, settled_speed_) + verdicts_ + followedEvidence() + untoldEvidence());
 }
 
 double Existence::settledProbability(FrameId frame) const {
@@ -101,7 +119,7 @@ double Existence::settledProbability(FrameId frame) const {
   const bool surely_seen = later != largest_.end() && later->verdicts >= kSure;
   const double before_slip = surely_seen ? later->verdicts - kSlip : verdicts_;
   const double by_speed = settled_speed_ > 0 ? settled_speed_ - kBestOfMany : settled_speed_;
-  return probabilityOf(by_speed + std::max(verdicts_, before_slip) + followedEvidence());
+  return probabilityOf(by_speed + std::max(verdicts_, before_slip) + followedEvidence() + untoldEvidence());
 }
 
 }  // namespace motorcade

@@ -49,6 +49,7 @@ class Existence {
 
  private:
   double followedEvidence() const;
+  double untoldEvidence() const;
 
   double recent_speed_, settled_speed_;                          // log likelihood ratios
   double surest_mps_ = std::numeric_limits<double>::infinity();  // standard deviation of a speed that is none
@@ -61,7 +62,8 @@ class Existence {
   std::optional<std::size_t> most_followed_;  // of all frames
   std::deque<Sum> largest_;                   // oldest first, and so the largest
   MotionVerdict last_ = MotionVerdict::kUntold;
-  int repeated_ = 0;
+  int repeated_ = 0, untold_ = 0;  // frames with the last verdict, and without any
+  bool told_ = false;              // by some image
 };
 
 }  // namespace motorcade

@@ -149,6 +149,21 @@ TEST(Existence, AsksForMoreThanThreeFollowedPointsInSomeFrame) {
   EXPECT_GT(more.settledProbability(kFirst), 0.8);
 }
 
+TEST(Existence, OfASlowTrackThatNoImageEverToldOfIsLow) {
+  const auto probability = [](double speed_mps, int untold, bool told) {
+    Existence existence;
+    existence.addSettledSpeed(speed_mps, 0.1);
+    addVerdicts(existence, 0, untold, MotionVerdict::kUntold);
+    if (told) addVerdicts(existence, untold, 1, MotionVerdict::kHardly);
+    EXPECT_EQ(existence.probability() < 0.5, existence.settledProbability(kFirst) < 0.5) << speed_mps;
+    return existence.probability();
+  };
+  EXPECT_GT(probability(1.2, 5, false), 0.5);
+  EXPECT_LT(probability(1.2, 6, false), 0.2);
+  EXPECT_GT(probability(1.2, 20, true), 0.5);
+  EXPECT_GT(probability(3, 20, false), 0.5) << "faster than a walk";
+}
+
 TEST(Existence, CountsSuccessiveFramesOfOneVerdictLessAndLess) {
   Existence existence;
   existence.addSpeed(15, 0.1);
