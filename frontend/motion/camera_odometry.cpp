@@ -212,19 +212,18 @@ Odometry CameraOdometry::passOver(Timestamp stamp) {
   return odometry;
 }
 
-/// Step from the frame before, seen or not. What is told of it is what is told since the last frame that was seen,
-/// minus what was told up to the frame before.
+/// Step from the frame before, seen or not. What is told of it is what is told since the last frame that was seen, from
+/// where the frame before was taken to be. What was told up to that frame is subtracted from the covariance.
 Odometry CameraOdometry::stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told) {
   last_stamp_ = stamp;
   if (!first_stamp_) first_stamp_ = stamp;
   Odometry odometry{T_seen_before_.inverse() * T_seen_now, covariance};
   if (!told) return odometry;
-  odometry.told = {told->T_then_now, told->covariance};
-  if (!told_before_) return odometry;
   const SE3 T_before_now = T_seen_before_.inverse() * told->T_then_now;
+  odometry.told = {T_before_now.normalized(), told->covariance};
+  if (!told_before_) return odometry;
   const Matrix6d A = T_before_now.inverse().adjoint();
-  odometry.told = {T_before_now.normalized(),
-                   positivePart(told->covariance - A * told_before_->covariance * A.transpose())};
+  odometry.told->covariance = positivePart(told->covariance - A * told_before_->covariance * A.transpose());
   return odometry;
 }
 

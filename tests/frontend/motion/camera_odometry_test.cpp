@@ -206,6 +206,19 @@ TEST(CameraOdometry, ASteadyMotionLinksForHalfASecond) {
   EXPECT_EQ(odometry.segment(), 1);
 }
 
+TEST(CameraOdometry, WhatIsToldAfterAnUnseenFrameIsOneStep) {
+  CameraOdometry odometry({}, kRig);
+  stepsUnlinkedAfter(odometry, kOdometryStep, 0);
+  odometry.passOver({700'000'000});
+  CameraMotion lost;
+  lost.status = FrameStatus::kLost;
+  lost.T_seen_now = odometry.predict({800'000'000}).T_seen_now;
+  const Odometry step = odometry.add({800'000'000}, lost);
+  ASSERT_TRUE(step.told);
+  EXPECT_THAT(step.told->T_previous_now, test::IsNearPose(step.T_previous_now, 1e-9));
+  EXPECT_NEAR(step.told->T_previous_now.translation().norm(), 1, 0.05) << "and not two";
+}
+
 TEST(CameraOdometry, AMotionThatIsNotSteadyLinksNothing) {
   CameraOdometry odometry({}, kRig);
   see(odometry, frameAt(0, 0), kNothingKnown);
