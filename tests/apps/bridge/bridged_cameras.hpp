@@ -54,10 +54,11 @@ class CameraPublishers {
   /// Publishes gray of 8 bits, as mono8, or as the rgb8 that has the same gray.
   void publish(StereoSide side, const Pair::Image& image, std::int64_t stamp_ns, bool colors = false) const {
     std::vector<std::uint8_t> bytes;
-    const auto* const pixels = static_cast<const std::uint8_t*>(image.pixels);
-    for (int y = 0; y < image.height_px; ++y)
-      for (int x = 0; x < image.width_px; ++x)
-        bytes.insert(bytes.end(), colors ? 3 : 1, pixels[y * image.stride_bytes + x]);
+    const auto* row = static_cast<const std::uint8_t*>(image.pixels);
+    for (int y = 0; y < image.height_px; ++y, row += image.stride_bytes) {
+      if (!colors) bytes.insert(bytes.end(), row, row + image.width_px);
+      for (int x = 0; colors && x < image.width_px; ++x) bytes.insert(bytes.end(), 3, row[x]);
+    }
     const std::string frame_id = "camera", encoding = colors ? "rgb8" : "mono8";
     sensor_msgs_msg_dds__Image_ message{};
     message.header = headerAt(stamp_ns, frame_id);

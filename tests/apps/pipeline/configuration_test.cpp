@@ -9,10 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "io/files/errors.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace motorcade {
 namespace {
 
+using test::contentOf;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -76,6 +78,11 @@ TEST(Configuration, BindsEachKeyOnceWithItsDefaultInRange) {
   PipelineConfig config;
   // TOML itself refuses a key or section that comes twice.
   EXPECT_NO_THROW(applyToml(config, toToml(config), "defaults"));
+}
+
+TEST(Configuration, DocumentsListTheDefaults) {
+  EXPECT_EQ(contentOf(MOTORCADE_SOURCE_DIR "/docs/parameters.toml"), toToml({}))
+      << "docs/parameters.toml is effective_config.toml of a run without options";
 }
 
 TEST(Configuration, HasFewKeysThatEachSayWhatTheyAreFor) {
