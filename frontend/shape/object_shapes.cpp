@@ -13,6 +13,7 @@
 #include "frontend/shape/object_sight.hpp"
 #include "frontend/shape/outline_completion.hpp"
 #include "frontend/shape/point_extent.hpp"
+#include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
 namespace {
@@ -53,6 +54,13 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
   else
     near.add(Vector6d::Unit(2 * axis + 1), view.points->max()[axis], kSigma_m);
   return near;
+}
+
+/// What the cuboid of a walker holds where points are few: the origin, which is the middle of those that were first
+/// followed. Otherwise its outline may take in a car that is parked behind, and then move over to it.
+Eigen::AlignedBox3d atOrigin() {
+  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  return {origin, origin};
 }
 
 /// Measurement of an object by the frame's earlier stages; null where it was not seen.
@@ -201,6 +209,7 @@ ObjectView ObjectShapes::viewOf(const ObjectEstimate& object, const Inputs& inpu
   const ObjectKind small = smallKindOf(view, observed, shape);
   view.small = small != ObjectKind::kUnknown;
   if (view.small) view.box = estimateBox(shape.evidence, shape.traits, small);
+  if (view.small && !view.points && shape.traits.speed_mps < kFastestWalk_mps) view.points = atOrigin();
   if (extent.sure && !view.small) view.box.reach(*extent.sure);
   view.level = sight_.levelOf(view, static_cast<int>(inputs.features->right.levels.size()));
   if (view.small) view.width = kTrunk_m * camera_.fx_px / T_cam_body.translation().z() / (1 << view.level);

@@ -118,6 +118,7 @@ class Crossing {
     if (state != ObjectState::kPredicted) {
       measurements->objects.push_back(observation(frame, T_cam_body, speed_mps_ > 0 ? -1 : 1));
       measurements->objects.back().born_slow = born_slow;
+      if (pointless) measurements->objects.back().measured.clear();
     }
     auto estimates = std::make_shared<Estimates>();
     ObjectEstimate object;
@@ -132,7 +133,7 @@ class Crossing {
     return shaped_->online;
   }
   FrameEstimate look(ObjectState state) { return look(state, Scene(T_cam_car(next_))); }
-  bool born_slow = false;
+  bool born_slow = false, pointless = false;
   const std::vector<ObjectMask>& masks() const { return shaped_->masks; }
   /// Final estimates, with body frames at `T_online_final` in the online ones.
   std::vector<FrameEstimate> finish(const SE3& T_online_final = {}) {
@@ -223,6 +224,22 @@ TEST(ObjectShapes, WhatIsHardlySeenStandsBehindItsPoints) {
   ASSERT_TRUE(online.objects[0].cuboid);
   const ObjectBox& cuboid = *online.objects[0].cuboid;
   EXPECT_NEAR(cuboid.center_body.y() - cuboid.size_m.y() / 2, -kCar_m.y() / 2 - kOrigin_m.y(), 0.2);
+}
+
+TEST(ObjectShapes, TheCuboidOfAWalkerWithoutPointsStaysNearItsOrigin) {
+  constexpr double kCarAside_m = 1.7, kCarBehind_m = 0.9;
+  Crossing walker(-0.5, 1.4);
+  walker.pointless = true;
+  FrameEstimate online;
+  for (int frame = 0; frame < 5; ++frame) {
+    const Eigen::Vector3d at = walker.T_cam_car(frame).translation();
+    online = walker.look(ObjectState::kMoving,
+                         Scene(StreetByHand::standingAt(at.x() - kCarAside_m, at.z() + kCarBehind_m, M_PI / 2)));
+  }
+  ASSERT_TRUE(online.objects[0].cuboid);
+  const ObjectBox& cuboid = *online.objects[0].cuboid;
+  const Eigen::Array2d beside_m = cuboid.center_body.head<2>().array().abs() - cuboid.size_m.head<2>().array() / 2;
+  EXPECT_LT(beside_m.max(0).matrix().norm(), 0.48);  // 0.51 where only the outline counts, which is the car's
 }
 
 TEST(ObjectShapes, WhatLeavesTheImageKeepsItsCuboid) {
