@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include "apps/commands/command_line.hpp"
@@ -44,6 +45,14 @@ constexpr int kExitInternal = 70;
   endWith("motorcade: internal error\n");
 }
 
+/// Keeps one heap for all threads. glibc gives threads heaps of their own, and what one has free the others cannot use.
+/// Stages allocate little, so they hardly wait for each other.
+void shareHeap() {
+#ifdef M_ARENA_MAX
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 /// Chooses the kernels' instructions, which the environment may name.
 void chooseKernels() {
   try {
@@ -75,6 +84,7 @@ int perform(const std::function<int()>& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  shareHeap();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of the write, as on a full disk
   std::set_new_handler(endWithoutMemory);
   std::set_terminate(endWithCurrentException);

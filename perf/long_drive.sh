@@ -64,7 +64,7 @@ awk -v frames="$frames" -v settled="$settled" -v first="$(p99 0 $ends)" -v last=
     if (!m || !e) { print "the run was too fast to be watched: take more frames"; exit 1 }
     mid = median(mid_kb, m) / 1e3; end = median(end_kb, e) / 1e3
     printf "%-26s %14s %14s\n", "", "frame " settled, "frame " frames
-    printf "%-26s %14.1f %14.1f  %s\n", "resident memory MB", mid, end, verdict(end - mid <= 8 || end <= 1.02 * mid)
+    printf "%-26s %14.1f %14.1f  %s\n", "resident memory MB", mid, end, verdict(end - mid <= 4 || end <= 1.02 * mid)
     printf "%-26s %14d %14d  %s\n", "file descriptors", median(mid_fd, m), median(end_fd, e), verdict(end_fd[int((e + 1) / 2)] <= mid_fd[int((m + 1) / 2)])
     printf "%-26s %14d %14d  %s\n", "threads", median(mid_threads, m), median(end_threads, e), verdict(end_threads[int((e + 1) / 2)] <= mid_threads[int((m + 1) / 2)])
     printf "%-26s %14.1f %14.1f  %+.0f %%\n", "p99 of " ends " latencies ms", first, last, 100 * (last / first - 1)
