@@ -13,6 +13,7 @@
 #include "apps/check/finding_guide.hpp"
 #include "apps/check/sequence_remarks.hpp"
 #include "apps/inject/fault_injector.hpp"
+#include "apps/watch/frozen_camera.hpp"
 #include "apps/watch/input_check.hpp"
 #include "apps/watch/own_vehicle_search.hpp"
 #include "apps/watch/vehicle_news.hpp"
@@ -33,6 +34,7 @@ struct Seen {
   std::string first_problem;
   std::vector<StereoFrame> kept;  // with their images, where a page needs them
   std::optional<OwnVehicleView> own_vehicle;
+  std::optional<FrozenCamera::Side> frozen;
 
   void count(const StereoFrame& pair) {
     ++pairs;
@@ -47,6 +49,7 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
   const FrameRange range = selectedFrames(options.frames, sequence);
   FaultInjector faults(parseFaultSpec(options.inject), sequence);
   OwnVehicleSearch own_vehicle(sequence.camera);
+  FrozenCamera frozen_camera;
   Seen seen;
   FrameId passed_over;  // the last one; what comes of it or of one before is late, and a run ignores it
   const FaultInjector::Outlet outlet{.push =
@@ -55,7 +58,10 @@ Seen look(InputCheck& check, const Sequence& sequence, const CheckOptions& optio
                                            seen.count(pair);
                                            const std::size_t before = check.pairs();
                                            check.observe(pair);
-                                           if (isWhole(pair)) own_vehicle.observe(pair);
+                                           if (isWhole(pair)) {
+                                             own_vehicle.observe(pair);
+                                             if (auto side = frozen_camera.observe(pair)) seen.frozen = side;
+                                           }
                                            if (!options.page.empty() && check.pairs() > before)
                                              seen.kept.push_back(pair);
                                            return !check.complete();
@@ -90,6 +96,7 @@ std::vector<Finding> findingsOf(const InputCheck& check, const Seen& seen, const
   for (const std::string& oddity : odditiesOf(sequence.camera)) findings.push_back({"camera", oddity, false});
   if (const auto doubt = mosaicDoubt(sequence, range, kMosaicPairs)) findings.push_back({"mosaic", *doubt, false});
   if (const auto hidden = ownVehicleFinding(seen.own_vehicle)) findings.push_back(*hidden);
+  if (seen.frozen) findings.push_back(findingOf(*seen.frozen));
   for (const InputNote& note : sequence.notes) findings.push_back({note.name, note.text, note.worthless});
   if (seen.unusable == seen.pairs)
     findings.push_back({"images",

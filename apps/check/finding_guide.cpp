@@ -13,7 +13,7 @@ constexpr std::string_view kRectify =
     "Rectify the images anew with this rig's calibration. If they were rectified, the rig has moved since it was "
     "calibrated: calibrate it again.";
 
-constexpr std::array<std::pair<std::string_view, FindingGuide>, 20> kGuides{{
+constexpr std::array<std::pair<std::string_view, FindingGuide>, 21> kGuides{{
     {"rows",
      {"The rows of the two images do not agree", kOnRows,
       "Crop both images alike, or rectify them anew: an offset alone is often a crop or a resize that was made "
@@ -41,6 +41,10 @@ constexpr std::array<std::pair<std::string_view, FindingGuide>, 20> kGuides{{
       "those of another moment.",
       "Pair the images by their times, not by their numbers. Look for a frame that one camera dropped, and "
       "let the cameras be triggered together."}},
+    {"frozen",
+     {"One camera hangs",
+      "Its image repeats while the other goes on: they show different moments, and nothing is found in both.",
+      "Look at the camera's driver and cable. In a recording, look for copied files."}},
     {"exposure",
      {"The exposure is not steady",
       "Points are followed by how their surroundings look; a jump in brightness loses them.",

@@ -26,6 +26,7 @@ std::string RigFinding::text() const {
 }
 
 std::vector<RigFinding> RigWatch::observe(const StereoFrame& pair) {
+  if (auto finding = frozen(pair)) return {*std::move(finding)};
   if (!check_) glance(pair);
   if (!check_) return {};
   check_->observe(pair);
@@ -35,6 +36,15 @@ std::vector<RigFinding> RigWatch::observe(const StereoFrame& pair) {
 std::vector<RigFinding> RigWatch::finish() {
   const bool enough = check_ && (!started_ || check_->pairs() >= kVerifiedBy / 2);
   return enough ? judge() : std::vector<RigFinding>{};
+}
+
+/// Reports a camera that hangs. Its pairs tell nothing of the rig.
+std::optional<RigFinding> RigWatch::frozen(const StereoFrame& pair) {
+  const auto side = isWhole(pair) ? frozen_camera_.observe(pair) : std::nullopt;
+  if (!side) return std::nullopt;
+  worthless_ = true;
+  if (started_) check_.reset();
+  return RigFinding{findingOf(*side), side->last_good, pair.head.frame};
 }
 
 /// Starts a check, pair by pair, if this pair disagrees with the usual rig.

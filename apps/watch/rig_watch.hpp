@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/watch/frozen_camera.hpp"
 #include "apps/watch/input_check.hpp"
 
 namespace motorcade {
@@ -30,7 +31,8 @@ class RigWatch {
   static constexpr std::size_t kVerifiedBy = 12;  // pairs
   explicit RigWatch(const StereoCamera& camera) : camera_(camera), check_(std::in_place, camera) {}
 
-  /// Returns the new findings if this pair completes a check: all for the first pairs, later only those on the rig.
+  /// Returns the new findings if this pair completes a check: all for the first pairs, later only those on the rig. A
+  /// camera that hangs is found at any time.
   std::vector<RigFinding> observe(const StereoFrame& pair);
   /// Judges an unfinished check after the last pair; fewer pairs than usual suffice.
   std::vector<RigFinding> finish();
@@ -38,12 +40,14 @@ class RigWatch {
   bool worthless() const { return worthless_; }
 
  private:
+  std::optional<RigFinding> frozen(const StereoFrame& pair);
   void glance(const StereoFrame& pair);
   bool agrees(const StereoFrame& pair);
   std::vector<RigFinding> judge();
 
   StereoCamera camera_;
   ImagePool pool_;
+  FrozenCamera frozen_camera_;
   bool started_ = false;             // the first pairs are judged
   std::optional<InputCheck> check_;  // while pairs are looked at one by one
   PairGeometry usual_;               // as the rig was when it was good

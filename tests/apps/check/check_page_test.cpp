@@ -123,7 +123,7 @@ TEST(CheckPage, ACalibrationOfZeroStillHasAPage) {
 }
 
 TEST(FindingGuide, KnowsEveryFindingByItsOwnWords) {
-  for (const char* name : {"rows", "roll", "zoom", "yaw", "lift", "ahead", "distortion", "exchanged", "apart",
+  for (const char* name : {"rows", "roll", "zoom", "yaw", "lift", "ahead", "distortion", "exchanged", "apart", "frozen",
                            "exposure", "blur", "noise", "times", "points", "calibration"}) {
     EXPECT_NE(guideTo(name).title, name);
     EXPECT_GT(guideTo(name).mend.size(), 20U) << name;

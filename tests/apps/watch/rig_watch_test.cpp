@@ -146,6 +146,45 @@ TEST(RigWatch, TellsWithinTwentyPairsWhatBecomesOfTheRig) {
   }
 }
 
+TEST(RigWatch, NamesACameraThatHangs) {
+  constexpr int kBegin = 26;
+  for (const std::string side : {"left", "right"}) {
+    SCOPED_TRACE(side);
+    Drive drive;
+    RigWatch watch(kWallCamera);
+    Image last;
+    const auto found = drive.watched(watch, 50, [&](StereoFrame& pair, ImagePool&) {
+      Image& image = side == "left" ? pair.left : pair.right;
+      if (within(pair, kBegin, 50))
+        image = last;
+      else
+        last = image;
+    });
+    ASSERT_FALSE(found.empty());
+    const RigFinding& finding = found.back().second;
+    EXPECT_EQ(finding.finding.name, "frozen");
+    EXPECT_THAT(finding.text(), HasSubstr("the " + side + " camera hangs"));
+    EXPECT_EQ(finding.last_good->value, kBegin - 1);
+    EXPECT_EQ(found.back().first, kBegin + FrozenCamera::kPairs - 1);
+    EXPECT_TRUE(finding.finding.worthless && watch.worthless());
+  }
+}
+
+TEST(RigWatch, ACameraMayHangForSomePairsOrBeDarkAndADriveMayRepeat) {
+  Drive drive;
+  RigWatch watch(kWallCamera);
+  const StereoFrame first = drive.pair(0);
+  Image last;
+  EXPECT_THAT(drive.watched(watch, 80,
+                            [&](StereoFrame& pair, ImagePool& pool) {
+                              if (within(pair, 22, 25)) pair.right = last;
+                              if (within(pair, 30, 55)) pair.left = first.left, pair.right = first.right;
+                              if (within(pair, 60, 80)) pair.right = filled(pair.right, 0, pool);
+                              last = pair.right;
+                            }),
+              IsEmpty());
+}
+
 TEST(RigWatch, PassesOverAFewBadPairs) {
   Drive drive;
   RigWatch watch(kWallCamera);
