@@ -111,7 +111,11 @@ std::span<const Value* const> LinearModels::valuesOf(const Factor& factor, Value
 Column LinearModels::appliedCoordinates(const Factor& factor) {
   coordinates_.resize(factor.variables().size() * VariableState::kMaxDimension);
   double* end = coordinates_.data();
-  for (const VariableId v : factor.variables()) end = std::copy_n(states_[v].x_applied.begin(), states_[v].size, end);
+  for (const VariableId v : factor.variables()) {
+    const VariableState& state = states_[v];
+    std::ranges::copy(state.x_applied, end);  // so many numbers are no call
+    end += state.size;
+  }
   coordinates_.resize(static_cast<std::size_t>(end - coordinates_.data()));
   return {coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size())};
 }

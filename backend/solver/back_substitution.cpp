@@ -75,11 +75,12 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 void BackSubstitution::solve(const Clique& clique, Solution since, double threshold_sigmas) {
   ++newest_;
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
-  x_separator_.resize(clique.separatorSize());
+  x_separator_.resize(clique.separatorSize() + VariableState::kMaxDimension);
   double* end = x_separator_.data();
   for (const VariableId v : clique.separator()) {
     const VariableState& state = graph_.states()[v];
-    end = std::copy_n(state.x.begin(), state.size, end);
+    std::ranges::copy(state.x, end);  // so many numbers are no call
+    end += state.size;
   }
   x_frontal_.resize(clique.frontal_size);
   backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());

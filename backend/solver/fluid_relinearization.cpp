@@ -210,7 +210,7 @@ void FluidRelinearization::relinearizeStale() {
 void FluidRelinearization::relinearizeWhatIsFree() {
   for (const int c : work_.removed())
     for (const VariableId v : tree_[c].frontalVariables())
-      if (isStale(v) && costOfRelinearizing(v).work.scalars == 0) relinearize(v);
+      if (isStale(v) && isFree(v)) relinearize(v);
 }
 
 /// Relinearizes the worst first, as far as the allowances reach. Variables so far off that the solution suffers have
@@ -269,7 +269,7 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
 }
 
 FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v, double& flops_left) {
-  const Cost cost = costOfRelinearizing(v);
+  const Cost cost = costOfRelinearizing(v, flops_left);
   if (!budget_.affords(cost.work)) return Reach::kBeyondBudget;
   if (cost.volume > flops_left) return Reach::kBeyondAllowance;
   budget_.plan(cost.work);
@@ -278,10 +278,11 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v
   return Reach::kWithin;
 }
 
-/// Cost of the cliques that are eliminated anew only for the variable.
-FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v) {
+/// Cost of the cliques that are eliminated anew only for the variable; of a part of them where that is too much.
+FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v, double most_volume) {
   counted_.reset(tree_.slots());
   const bool counts_flops = budget_.limitsFlops();  // they would take a twentieth of an update to count
+  const bool limited = budget_.limited();
   CliqueCost work;
   double volume = 0;
   for (const FactorId f : graph_.factorsOf(v)) {
@@ -291,9 +292,18 @@ FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId 
       work.scalars += tree_[c].frontal_size;
       volume += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
       if (counts_flops) work.flops += eliminationCost(tree_[c]).flops;
+      if (limited ? !budget_.affords(work) : volume > most_volume) return {work, volume};
     }
   }
   return {work, volume};
+}
+
+/// True when all cliques that the variable's relinearization concerns are eliminated anew in any case.
+bool FluidRelinearization::isFree(VariableId v) const {
+  return std::ranges::all_of(graph_.factorsOf(v), [&](FactorId f) {
+    const int owner = new_factors_.contains(f.value) ? -1 : tree_.ownerOf(graph_.variablesOf(f));
+    return owner < 0 || work_.isEliminated(owner);
+  });
 }
 
 /// Moves the variable's linearization point. Its factors get new Jacobians when those of all variables have moved.

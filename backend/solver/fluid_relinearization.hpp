@@ -82,7 +82,8 @@ class FluidRelinearization {
   void relinearizeAtRest();
   Reach relinearizeRegion(VariableId worst, double worst_turn_rad, double& flops_left);
   Reach relinearizeWithin(VariableId v, double& flops_left);
-  Cost costOfRelinearizing(VariableId v);
+  Cost costOfRelinearizing(VariableId v, double most_volume);
+  bool isFree(VariableId v) const;
   void relinearize(VariableId v);
   void correctResiduals();
   bool waitsForJacobians(const OffModel& off) const;
