@@ -3,20 +3,6 @@
 #include <algorithm>
 
 namespace motorcade {
-namespace {
-
-constexpr int kSmallStride = 128;  // up to which clearing all of a matrix takes less time than its columns one by one
-
-/// Clears the lower triangle, and the 4 x 4 blocks on the diagonal whole, as the kernels read them.
-void clearLowerTriangle(double* matrix, int stride, int columns) {
-  if (stride <= kSmallStride) {
-    std::fill_n(matrix, stride * columns, 0.0);
-    return;
-  }
-  for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
-}
-
-}  // namespace
 
 double Front::eliminate(Clique& clique) {
   gather(clique, clique.panel);

@@ -30,45 +30,55 @@ HWY_INLINE void addTo(double* to, const double* from, int count) {
   if (count & 1) to[i] += from[i];
 }
 
-/// A block of a matrix in columns that begin at `columns.from`, and of rows below them.
-template <int kRows, class ColumnOf>
-HWY_INLINE void addBlock(const FrontColumns& front, const ColumnOf& source, const RowSpan& columns,
-                         const RowSpan& rows) {
+/// A column of a matrix, indexed by row, and the way to those after it.
+struct Column {
+  const double* at;
+  int step, shrinks;  // numbers to the next column; one less each time where the matrix is packed
+
+  HWY_INLINE void next() { at += step, step -= shrinks; }
+};
+
+/// A block of a matrix: rows below the diagonal, of columns from `column` on.
+template <int kRows>
+HWY_INLINE void addBlock(const FrontColumns& front, Column column, const RowSpan& columns, const RowSpan& rows) {
   const int count = kRows > 0 ? kRows : rows.size, stride = front.strideAt(columns.to);
   double* to = front[columns.to] + rows.to;
-  for (int j = 0; j < columns.size; ++j, to += stride) addTo(to, source(columns.from + j) + rows.from, count);
+  for (int j = 0; j < columns.size; ++j, to += stride, column.next()) addTo(to, column.at + rows.from, count);
 }
 /// The same where it lies above the front's diagonal, so that its transpose is added.
-template <class ColumnOf>
-HWY_INLINE void addTransposed(const FrontColumns& front, const ColumnOf& source, const RowSpan& columns,
-                              const RowSpan& rows) {
+HWY_INLINE void addTransposed(const FrontColumns& front, Column column, const RowSpan& columns, const RowSpan& rows) {
   const int stride = front.strideAt(rows.to);
   double* const first = front[rows.to] + columns.to;
-  for (int j = 0; j < columns.size; ++j) {
-    const double* const from = source(columns.from + j) + rows.from;
+  for (int j = 0; j < columns.size; ++j, column.next()) {
+    const double* const from = column.at + rows.from;
     double* to = first + j;
     for (int i = 0; i < rows.size; ++i, to += stride) *to += from[i];
   }
 }
+/// A block on the diagonal, of which the lower triangle counts.
+HWY_INLINE void addDiagonal(const FrontColumns& front, Column column, const RowSpan& columns) {
+  const int stride = front.strideAt(columns.to);
+  double* to = front[columns.to] + columns.to;
+  for (int j = 0; j < columns.size; ++j, to += stride + 1, column.next())
+    addTo(to, column.at + columns.from + j, columns.size - j);
+}
 
-/// `source` gives the matrix's columns, indexed by row.
+/// `columnOf` gives the matrix's columns.
 template <class ColumnOf>
-HWY_INLINE void addSymmetric(const FrontColumns& front, const ColumnOf& source, std::span<const RowSpan> spans) {
+HWY_INLINE void addSymmetric(const FrontColumns& front, const ColumnOf& columnOf, std::span<const RowSpan> spans) {
   for (std::size_t b = 0; b < spans.size(); ++b) {
     const RowSpan columns = spans[b];
-    const int stride = front.strideAt(columns.to);
-    double* to = front[columns.to] + columns.to;
-    for (int j = 0; j < columns.size; ++j, to += stride + 1)
-      addTo(to, source(columns.from + j) + columns.from + j, columns.size - j);
+    const Column first = columnOf(columns.from);
+    addDiagonal(front, first, columns);
     for (const RowSpan& rows : spans.subspan(b + 1)) {
       if (rows.to < columns.to)
-        addTransposed(front, source, columns, rows);
+        addTransposed(front, first, columns, rows);
       else if (rows.size == 3)
-        addBlock<3>(front, source, columns, rows);
+        addBlock<3>(front, first, columns, rows);
       else if (rows.size == 6)
-        addBlock<6>(front, source, columns, rows);
+        addBlock<6>(front, first, columns, rows);
       else
-        addBlock<0>(front, source, columns, rows);
+        addBlock<0>(front, first, columns, rows);
     }
   }
 }
@@ -140,14 +150,28 @@ void addSquareOf(const FrontColumns& front, const double* J, std::span<const Row
 
 }  // namespace
 
+/// With a constant in place of `value` the compiler would call the C library for each column.
+void fillTriangle(double* matrix, int stride, int columns, double value) {
+  for (int j = 0; j < columns; ++j, matrix += stride)
+    for (int i = j / kLanes * kLanes; i < stride; i += kLanes) store(matrix + i, broadcast(value));
+}
+
 void addPacked(const FrontColumns& front, const PackedTriangle& matrix, std::span<const RowSpan> spans) {
   addSymmetric(
-      front, [&](int j) HWY_ATTR { return matrix.column(j); }, spans);
+      front,
+      [&](int j) HWY_ATTR {
+        return Column{matrix.column(j), matrix.size - j - 1, 1};
+      },
+      spans);
 }
 
 void addStrided(const FrontColumns& front, const double* matrix, int stride, std::span<const RowSpan> spans) {
   addSymmetric(
-      front, [=](int j) HWY_ATTR { return matrix + std::ptrdiff_t(j) * stride; }, spans);
+      front,
+      [=](int j) HWY_ATTR {
+        return Column{matrix + std::ptrdiff_t(j) * stride, stride, 0};
+      },
+      spans);
 }
 
 void addSquare(const FrontColumns& front, const double* J, int rows, std::span<const RowSpan> spans) {
@@ -172,10 +196,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
+MOTORCADE_EXPORT(fillTriangle);
 MOTORCADE_EXPORT(addPacked);
 MOTORCADE_EXPORT(addStrided);
 MOTORCADE_EXPORT(addSquare);
 MOTORCADE_EXPORT(packTriangle);
+
+void clearLowerTriangle(double* matrix, int stride, int columns) {
+  MOTORCADE_KERNEL(fillTriangle)(matrix, stride, columns, 0.0);
+}
 
 void addToFront(const FrontColumns& front, const PackedTriangle& matrix, std::span<const RowSpan> spans) {
   MOTORCADE_KERNEL(addPacked)(front, matrix, spans);

@@ -29,6 +29,10 @@ struct RowSpan {
   int from, to, size;
 };
 
+/// Clears the lower triangle of a matrix, and the 4 x 4 blocks on the diagonal whole, as the dense kernels read them.
+/// The stride is a multiple of 4.
+void clearLowerTriangle(double* matrix, int stride, int columns);
+
 /// Adds a small symmetric matrix, of which the lower triangle is read, to the front's lower triangle. The spans say
 /// where its rows are, in ascending order of `from`; none crosses the border between panel and update matrix.
 void addToFront(const FrontColumns& front, const PackedTriangle& matrix, std::span<const RowSpan> spans);

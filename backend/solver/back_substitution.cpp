@@ -20,6 +20,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   solved_.clear();
   hurrying_.clear();
   first_of_call_ = newest_ + 1;
+  spread_ = spread;
   waiting_since_.resize(graph_.slots(), 0);
   solved_by_.resize(graph_.slots(), 0);
   moved_by_.resize(graph_.slots(), 0);
@@ -75,14 +76,14 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 void BackSubstitution::solve(const Clique& clique, Solution since, double threshold_sigmas) {
   ++newest_;
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
-  x_separator_.resize(clique.separatorSize() + VariableState::kMaxDimension);
+  x_separator_.resize(std::max(x_separator_.size(), std::size_t(clique.size) + VariableState::kMaxDimension));
   double* end = x_separator_.data();
   for (const VariableId v : clique.separator()) {
     const VariableState& state = graph_.states()[v];
-    std::ranges::copy(state.x, end);  // so many numbers are no call
+    __builtin_memcpy(end, state.x.data(), sizeof(state.x));  // so many numbers are copied without a call
     end += state.size;
   }
-  x_frontal_.resize(clique.frontal_size);
+  x_frontal_.resize(std::max(x_frontal_.size(), std::size_t(clique.frontal_size)));
   backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());
   result_.scalars += clique.frontal_size;
   budget_.count(substitutionFlops(clique));
@@ -92,7 +93,7 @@ void BackSubstitution::solve(const Clique& clique, Solution since, double thresh
       return std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return by[v.value] >= since; });
     };
     if (anyIn(moved_by_)) putOff(tree_[child], since);
-    if (anyIn(moved_far_by_)) hurrying_.push_back(tree_[child].variables.front());
+    if (spread_ == Spread::kFar && anyIn(moved_far_by_)) hurrying_.push_back(tree_[child].variables.front());
     if (work_.has(child)) open_.push_back(child);
   }
 }

@@ -113,6 +113,16 @@ TEST(FrontSums, OtherSizesOfJacobiansAreLeftToTheCaller) {
   EXPECT_EQ(front.lower(), MatrixXd::Zero(kSize, kSize));
 }
 
+TEST(FrontSums, ALowerTriangleIsClearedWithTheBlocksOnItsDiagonal) {
+  for (const int size : {1, 4, 7, 21}) {
+    PaddedMatrix matrix(MatrixXd::Ones(size, size));
+    clearLowerTriangle(matrix.data(), matrix.ld(), size);
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < size; ++i) EXPECT_EQ(matrix.view()(i, j), i / 4 < j / 4 ? 1 : 0);
+    EXPECT_TRUE(matrix.intactAround());
+  }
+}
+
 TEST(FrontSums, APackedTriangleHasTheColumnsWithoutGaps) {
   std::mt19937 random(4);
   for (const int size : {1, 2, 5, 8, 23}) {
