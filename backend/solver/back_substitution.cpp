@@ -32,7 +32,10 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
     return done < most_scalars && hasTime();
   };
   if (spread == Spread::kAll)
-    while (first_waiting_ < waiting_.size() && mayGoOn()) solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
+    while (first_waiting_ < waiting_.size() && mayGoOn()) {
+      fetchWaiting();
+      solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
+    }
   else
     for (std::size_t i = 0; i < hurrying_.size() && mayGoOn(); ++i) solveWaiting(hurrying_[i], threshold_sigmas);
   if (2 * first_waiting_ >= waiting_.size()) {  // a deque would take memory and give it back
@@ -42,6 +45,24 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   result_.moved = moved_;
   result_.solved = solved_;
   return result_;
+}
+
+/// Asks for what the next cliques will read first; the processor finds by itself what lies behind.
+void BackSubstitution::fetchWaiting() const {
+  constexpr std::size_t kSoon = 6, kLater = 12;  // variables; a clique has a few
+  constexpr int kLine_bytes = 64, kPanelLines = 8;
+  const auto fetch = [](const void* from, int lines) {
+    for (int line = 0; line < lines; ++line) __builtin_prefetch(static_cast<const char*>(from) + line * kLine_bytes);
+  };
+  const auto cliqueAt = [&](std::size_t ahead) {
+    const std::size_t at = first_waiting_ + ahead;
+    return at < waiting_.size() ? tree_.cliqueOf(waiting_[at]) : -1;
+  };
+  if (const int later = cliqueAt(kLater); later >= 0) fetch(&tree_[later], sizeof(Clique) / kLine_bytes);
+  if (const int soon = cliqueAt(kSoon); soon >= 0) {
+    fetch(tree_[soon].variables.data(), 1);
+    fetch(tree_[soon].panel, kPanelLines);
+  }
 }
 
 void BackSubstitution::solveWaiting(VariableId v, double threshold_sigmas) {

@@ -48,6 +48,7 @@ class BackSubstitution {
   void putOff(const Clique& clique, Solution since);
   /// Solves the clique of a variable that waits, if it still does.
   void solveWaiting(VariableId v, double threshold_sigmas);
+  void fetchWaiting() const;
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
