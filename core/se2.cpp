@@ -24,7 +24,10 @@ struct LeftJacobian {
 }  // namespace
 
 SE2::SE2(double angle_rad, const Eigen::Vector2d& translation_m)
-    : angle_rad_(wrapped(angle_rad)), translation_(translation_m) {}
+    : angle_rad_(wrapped(angle_rad)), translation_(translation_m) {
+  const auto [sine, cosine] = sineCosine(angle_rad_);
+  sine_ = sine, cosine_ = cosine;
+}
 
 SE2 SE2::exp(const Eigen::Vector3d& xi) {
   const LeftJacobian V(xi[2]);
@@ -38,10 +41,7 @@ Eigen::Vector3d SE2::log() const {
           (V.a * translation_.y() - V.b * translation_.x()) / determinant, angle_rad_};
 }
 
-Eigen::Matrix2d SE2::rotation() const {
-  const auto [s, c] = sineCosine(angle_rad_);
-  return (Eigen::Matrix2d() << c, -s, s, c).finished();
-}
+Eigen::Matrix2d SE2::rotation() const { return (Eigen::Matrix2d() << cosine_, -sine_, sine_, cosine_).finished(); }
 
 SE2 SE2::inverse() const { return {-angle_rad_, -(rotation().transpose() * translation_)}; }
 

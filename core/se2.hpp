@@ -27,7 +27,7 @@ class SE2 {
   Eigen::Matrix3d adjoint() const;
 
  private:
-  double angle_rad_ = 0;
+  double angle_rad_ = 0, sine_ = 0, cosine_ = 1;
   Eigen::Vector2d translation_ = Eigen::Vector2d::Zero();
 };
 

@@ -58,7 +58,8 @@ PoseGraph::Pose movedBy(const PoseGraph::Pose& move, const Value& value) {
 IncrementalSolver::Params PoseGraphFeed::solverParams() {
   IncrementalSolver::Params params;
   params.spread_every_updates = 4;
-  params.kept_eliminations = 200;  // by which most cliques near the root are eliminated anew anyway
+  params.kept_bytes = std::size_t{8} << 20;  // what caches hold anyway is not made again
+  params.kept_eliminations = 200;            // by which most cliques near the root are eliminated anew anyway
   return params;
 }
 

@@ -22,12 +22,12 @@ void clear(Clique& clique) {
 
 }  // namespace
 
-int EliminationTree::cliqueOf(VariableId v) const {
-  return static_cast<std::size_t>(v.value) < clique_of_.size() ? clique_of_[v.value] : -1;
-}
-
 int EliminationTree::ownerOf(std::span<const VariableId> variables) const {
-  return cliqueOf(*std::ranges::min_element(variables, {}, [&](VariableId v) { return sequence_[v.value]; }));
+  VariableId first = variables.front();
+  std::int64_t least = sequence_[first.value];
+  for (const VariableId v : variables.subspan(1))
+    if (const std::int64_t sequence = sequence_[v.value]; sequence < least) first = v, least = sequence;
+  return cliqueOf(first);
 }
 
 std::int64_t EliminationTree::sequence(int clique) const {

@@ -17,7 +17,9 @@ class EliminationTree {
   const Clique& operator[](int clique) const { return cliques_[clique]; }
   Clique& operator[](int clique) { return cliques_[clique]; }
   /// The clique that has the variable among its frontals, -1 if none.
-  int cliqueOf(VariableId v) const;
+  int cliqueOf(VariableId v) const {
+    return static_cast<std::size_t>(v.value) < clique_of_.size() ? clique_of_[v.value] : -1;
+  }
   /// The clique that a factor over these variables belongs to.
   int ownerOf(std::span<const VariableId> variables) const;
   /// Appends the cliques with the variable among their frontals or in their separator.

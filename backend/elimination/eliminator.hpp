@@ -31,9 +31,12 @@ struct Elimination {
 class Eliminator {
  public:
   /// Update matrices of cliques that kept their place for `kept_eliminations` are given back, and made again for a
-  /// front that gathers them. With 0 all are kept.
-  Eliminator(const FactorGraph& graph, EliminationTree& tree, int kept_eliminations = 0)
-      : graph_(graph), tree_(tree), front_(graph, tree), update_matrices_(tree, front_, kept_eliminations) {}
+  /// front that gathers them. With 0 all are kept, as they are while they hold no more than `kept_bytes`.
+  Eliminator(const FactorGraph& graph, EliminationTree& tree, int kept_eliminations = 0, std::size_t kept_bytes = 0)
+      : graph_(graph),
+        tree_(tree),
+        front_(graph, tree),
+        update_matrices_(tree, front_, kept_eliminations, kept_bytes) {}
   Eliminator(const Eliminator&) = delete;  // its parts refer to each other
   Eliminator& operator=(const Eliminator&) = delete;
 

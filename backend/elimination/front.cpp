@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace motorcade {
-namespace {
-
-/// Clears the lower triangle, and the 4 x 4 blocks on the diagonal whole, as the kernels read them.
-void clearLowerTriangle(double* matrix, int stride, int columns) {
-  for (int j = 0; j < columns; ++j, matrix += stride) std::fill(matrix + j / 4 * 4, matrix + stride, 0.0);
-}
-
-}  // namespace
 
 double Front::eliminate(Clique& clique) {
   gather(clique, clique.panel);
@@ -78,8 +70,11 @@ void Front::addFactor(const Clique& clique, FactorId id) {
     columns_[clique.size][clique.size] += information.c();
     return;
   }
+  std::ranges::sort(spans_, {}, &RowSpan::to);
   spans_.push_back({from, clique.size, 1});
   const auto term = models.term(id);
+  if (addSquareToFront(columns_, term.data(), static_cast<int>(term.rows()), spans_)) return;
+  std::ranges::sort(spans_, {}, &RowSpan::from);
   const int columns = static_cast<int>(term.cols()), stride = padded(columns);
   product_.assign(columns * stride, 0.0);
   addJacobianProduct(term.data(), static_cast<int>(term.rows()), columns, product_.data(), stride);
@@ -123,10 +118,7 @@ void Front::splitAtFrontals(int frontal_size) {
 }
 
 void Front::packUpdateMatrix(Clique& clique) const {
-  const int rest = clique.separatorSize();
-  const double* from = update_matrix_.data();
-  double* to = clique.update_matrix;
-  for (int j = 0; j < rest; ++j, from += update_stride_) to = std::copy(from + j, from + rest, to);
+  packLowerTriangle(update_matrix_.data(), update_stride_, clique.separatorSize(), clique.update_matrix);
 }
 
 void Front::packContribution(Clique& clique) const {

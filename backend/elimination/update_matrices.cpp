@@ -16,6 +16,7 @@ void UpdateMatrices::noteAttached(int clique) {
 }
 
 void UpdateMatrices::giveBackOld() {
+  if (memory_.heldBytes() <= kept_bytes_) return;
   for (; !attached_.empty() && eliminations_ - attached_.front().when > kept_eliminations_; attached_.pop_front()) {
     const auto [when, id] = attached_.front();
     Clique& clique = tree_[id];

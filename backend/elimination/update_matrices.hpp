@@ -15,9 +15,10 @@ namespace motorcade {
 /// made again where a front gathers them.
 class UpdateMatrices {
  public:
-  /// Update matrices are old when their clique has kept its place for over `kept_eliminations`; with 0 all are kept.
-  UpdateMatrices(EliminationTree& tree, Front& front, int kept_eliminations)
-      : tree_(tree), front_(front), kept_eliminations_(kept_eliminations) {}
+  /// Update matrices are old when their clique has kept its place for over `kept_eliminations`; with 0 all are kept, as
+  /// they are while they hold no more than `kept_bytes`.
+  UpdateMatrices(EliminationTree& tree, Front& front, int kept_eliminations, std::size_t kept_bytes = 0)
+      : tree_(tree), front_(front), kept_eliminations_(kept_eliminations), kept_bytes_(kept_bytes) {}
 
   void beginElimination() { ++eliminations_; }
   /// Notes that the clique was hung below its parent.
@@ -59,6 +60,7 @@ class UpdateMatrices {
   EliminationTree& tree_;
   Front& front_;
   int kept_eliminations_;
+  std::size_t kept_bytes_;
   std::int64_t eliminations_ = 0;
   std::deque<Attached> attached_;  // cliques with update matrices, in that order; some have left
   BlockPool memory_;

@@ -59,14 +59,6 @@ void FactorGraph::removeFactor(FactorId id) {
   free_factors_.push_back(id);
 }
 
-bool FactorGraph::contains(VariableId id) const {
-  return id.value >= 0 && static_cast<std::size_t>(id.value) < slots() && nodes_[id.value].alive;
-}
-
-bool FactorGraph::contains(FactorId id) const {
-  return id.value >= 0 && static_cast<std::size_t>(id.value) < factorSlots() && !variablesOf(id).empty();
-}
-
 std::vector<VariableId> FactorGraph::variables() const { return idsIn<VariableId>(*this, slots()); }
 
 std::vector<FactorId> FactorGraph::factors() const { return idsIn<FactorId>(*this, factorSlots()); }

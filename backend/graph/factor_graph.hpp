@@ -39,8 +39,12 @@ class FactorGraph {
   std::size_t factorSlots() const { return variables_of_.size(); }
   std::size_t variableCount() const { return nodes_.size() - free_variables_.size(); }
   std::size_t factorCount() const { return variables_of_.size() - free_factors_.size(); }
-  bool contains(FactorId id) const;
-  bool contains(VariableId id) const;
+  bool contains(FactorId id) const {
+    return id.value >= 0 && static_cast<std::size_t>(id.value) < factorSlots() && !variablesOf(id).empty();
+  }
+  bool contains(VariableId id) const {
+    return id.value >= 0 && static_cast<std::size_t>(id.value) < slots() && nodes_[id.value].alive;
+  }
   /// All variables, and all factors, in ascending order of ids.
   std::vector<VariableId> variables() const;
   std::vector<FactorId> factors() const;

@@ -52,6 +52,8 @@ class LinearModels {
   /// Makes a new linear model: the Jacobian at the linearization points, the residual at the estimates. Returns false,
   /// and keeps the former one, if the new one is not finite.
   bool linearize(FactorId id);
+  /// Asks for what `mismatch` reads of a JacobianFactor and its model.
+  void fetch(FactorId id) const;
   /// Mismatch of a factor's model at the estimates; its vector lasts until the next call.
   Mismatch mismatch(FactorId id);
   /// Shifts the model's residual (of an InformationFactor its gradient) by its mismatch; the Jacobian stays.

@@ -20,7 +20,7 @@ SmallVector step(const VariableState& state) {
 
 /// The turn between two coordinates of a variable; zero for vectors.
 double turnBetween(const VariableState& state, const Coordinates& from, const Coordinates& to) {
-  if (std::holds_alternative<SmallVector>(state.applied_estimate)) return 0;
+  if (state.is_vector) return 0;
   double squared = 0;
   for (int i = state.size == 3 ? 2 : 3; i < state.size; ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
   return std::sqrt(squared);
@@ -30,7 +30,10 @@ double turnBetween(const VariableState& state, const Coordinates& from, const Co
 
 void VariableStates::begin(VariableId id, const Value& initial) {
   states_.resize(std::max(states_.size(), static_cast<std::size_t>(id.value) + 1));
-  (*this)[id] = {.size = dimension(initial), .applied_estimate = initial, .linearization_point = initial};
+  (*this)[id] = {.size = dimension(initial),
+                 .is_vector = std::holds_alternative<SmallVector>(initial),
+                 .applied_estimate = initial,
+                 .linearization_point = initial};
 }
 
 Value VariableStates::estimate(VariableId id) const {

@@ -20,6 +20,7 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   solved_.clear();
   hurrying_.clear();
   first_of_call_ = newest_ + 1;
+  spread_ = spread;
   waiting_since_.resize(graph_.slots(), 0);
   solved_by_.resize(graph_.slots(), 0);
   moved_by_.resize(graph_.slots(), 0);
@@ -31,7 +32,10 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
     return done < most_scalars && hasTime();
   };
   if (spread == Spread::kAll)
-    while (first_waiting_ < waiting_.size() && mayGoOn()) solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
+    while (first_waiting_ < waiting_.size() && mayGoOn()) {
+      fetchWaiting();
+      solveWaiting(waiting_[first_waiting_++], threshold_sigmas);
+    }
   else
     for (std::size_t i = 0; i < hurrying_.size() && mayGoOn(); ++i) solveWaiting(hurrying_[i], threshold_sigmas);
   if (2 * first_waiting_ >= waiting_.size()) {  // a deque would take memory and give it back
@@ -41,6 +45,24 @@ BackSubstitution::Result BackSubstitution::operator()(double threshold_sigmas, s
   result_.moved = moved_;
   result_.solved = solved_;
   return result_;
+}
+
+/// Asks for what the next cliques will read first; the processor finds by itself what lies behind.
+void BackSubstitution::fetchWaiting() const {
+  constexpr std::size_t kSoon = 6, kLater = 12;  // variables; a clique has a few
+  constexpr int kLine_bytes = 64, kPanelLines = 8;
+  const auto fetch = [](const void* from, int lines) {
+    for (int line = 0; line < lines; ++line) __builtin_prefetch(static_cast<const char*>(from) + line * kLine_bytes);
+  };
+  const auto cliqueAt = [&](std::size_t ahead) {
+    const std::size_t at = first_waiting_ + ahead;
+    return at < waiting_.size() ? tree_.cliqueOf(waiting_[at]) : -1;
+  };
+  if (const int later = cliqueAt(kLater); later >= 0) fetch(&tree_[later], sizeof(Clique) / kLine_bytes);
+  if (const int soon = cliqueAt(kSoon); soon >= 0) {
+    fetch(tree_[soon].variables.data(), 1);
+    fetch(tree_[soon].panel, kPanelLines);
+  }
 }
 
 void BackSubstitution::solveWaiting(VariableId v, double threshold_sigmas) {
@@ -75,13 +97,14 @@ void BackSubstitution::solveWork(double threshold_sigmas) {
 void BackSubstitution::solve(const Clique& clique, Solution since, double threshold_sigmas) {
   ++newest_;
   solved_.push_back(tree_.cliqueOf(clique.frontalVariables().front()));
-  x_separator_.resize(clique.separatorSize());
+  x_separator_.resize(std::max(x_separator_.size(), std::size_t(clique.size) + VariableState::kMaxDimension));
   double* end = x_separator_.data();
   for (const VariableId v : clique.separator()) {
     const VariableState& state = graph_.states()[v];
-    end = std::copy_n(state.x.begin(), state.size, end);
+    __builtin_memcpy(end, state.x.data(), sizeof(state.x));  // so many numbers are copied without a call
+    end += state.size;
   }
-  x_frontal_.resize(clique.frontal_size);
+  x_frontal_.resize(std::max(x_frontal_.size(), std::size_t(clique.frontal_size)));
   backSubstitute(clique.panelView(), x_separator_.data(), x_frontal_.data());
   result_.scalars += clique.frontal_size;
   budget_.count(substitutionFlops(clique));
@@ -91,7 +114,7 @@ void BackSubstitution::solve(const Clique& clique, Solution since, double thresh
       return std::ranges::any_of(tree_[child].separator(), [&](VariableId v) { return by[v.value] >= since; });
     };
     if (anyIn(moved_by_)) putOff(tree_[child], since);
-    if (anyIn(moved_far_by_)) hurrying_.push_back(tree_[child].variables.front());
+    if (spread_ == Spread::kFar && anyIn(moved_far_by_)) hurrying_.push_back(tree_[child].variables.front());
     if (work_.has(child)) open_.push_back(child);
   }
 }

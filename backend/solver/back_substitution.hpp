@@ -48,6 +48,7 @@ class BackSubstitution {
   void putOff(const Clique& clique, Solution since);
   /// Solves the clique of a variable that waits, if it still does.
   void solveWaiting(VariableId v, double threshold_sigmas);
+  void fetchWaiting() const;
 
   FactorGraph& graph_;
   const EliminationTree& tree_;
@@ -61,7 +62,8 @@ class BackSubstitution {
   /// Frontal variables of waiting cliques, those that wait longest first; their cliques may be gone by the time.
   std::vector<VariableId> waiting_;
   std::size_t first_waiting_ = 0;     // those before it are done
-  std::vector<VariableId> hurrying_;  // in the call at hand: of cliques below a variable that moved far
+  Spread spread_ = Spread::kAll;      // of the call at hand
+  std::vector<VariableId> hurrying_;  // in a call for far steps: of cliques below a variable that moved far
   /// Solutions per variable: its last, those that moved it last, at all and far, and the one since which it waits; 0:
   /// none.
   std::vector<Solution> solved_by_, moved_by_, moved_far_by_, waiting_since_;

@@ -40,8 +40,10 @@ std::span<double> CliqueWork::changeOf(int clique) {
 }
 
 void CliqueWork::apply(Eliminator& eliminator) {
-  std::ranges::sort(dirty_, {}, [&](int c) { return tree_.sequence(c); });
-  for (const int c : dirty_) {
+  in_order_.clear();
+  for (const int c : dirty_) in_order_.emplace_back(tree_.sequence(c), c);
+  std::ranges::sort(in_order_);
+  for (const auto& [sequence, c] : in_order_) {
     if (kind_[c] == Kind::kRefresh) {
       eliminator.refresh(c);
     } else {

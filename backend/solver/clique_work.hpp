@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "backend/elimination/eliminator.hpp"
@@ -47,8 +49,9 @@ class CliqueWork {
   std::span<double> changeOf(int clique);
 
   const EliminationTree& tree_;
-  std::vector<Kind> kind_;  // per clique
-  std::vector<int> dirty_;  // cliques to shift or refresh
+  std::vector<Kind> kind_;                              // per clique
+  std::vector<int> dirty_;                              // cliques to shift or refresh
+  std::vector<std::pair<std::int64_t, int>> in_order_;  // the same by their sequence; scratch
   std::vector<int> removed_;
   std::vector<double> changes_;            // of right-hand sides
   std::vector<std::size_t> change_begin_;  // per clique: where its change lies in `changes_`

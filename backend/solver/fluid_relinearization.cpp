@@ -13,11 +13,13 @@ constexpr double kDriftedShare = 1.0001;
 constexpr double kTurnedWithShare = 0.1;
 constexpr double kLeastStaleness_rad = 1e-12;  // tells a stale variable that has not turned from one that is not stale
 /// Stale variables are sorted a few at a time, as the budget seldom reaches farther; and a region has to end somewhere.
-constexpr std::size_t kWorstAtOnce = 16, kLargestRegion = 1000;
+constexpr std::ptrdiff_t kWorstAtOnce = 16;
+constexpr std::size_t kLargestRegion = 1000;
 constexpr int kLookedAtAtRest = 16;
 /// Drifts, in those at which Jacobians are taken anew, up to which residuals are still corrected.
 constexpr double kTrustedDrifts = 4;
 constexpr std::size_t kLeastLookedAt = 128;  // variables that moved, in a step
+constexpr std::size_t kAhead = 4;            // of them, asked for before they are looked at
 constexpr std::size_t kMostPutOff = 32;      // residuals that a step follows towards the root in vain
 
 /// First row of a variable in a clique's front.
@@ -46,8 +48,10 @@ void FluidRelinearization::compareModels(const BackSubstitution::Result& step) {
   compareThoseThatFollowed(step.solved);
   to_look_at_.insert(to_look_at_.end(), step.moved.begin(), step.moved.end());
   std::size_t seen = 0;
-  for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.isOver()); ++seen)
+  for (; seen < to_look_at_.size() && (seen < kLeastLookedAt || !budget_.isOver()); ++seen) {
+    if (seen + kAhead < to_look_at_.size()) states_.fetch(to_look_at_[seen + kAhead]);
     if (graph_.contains(to_look_at_[seen])) lookAt(to_look_at_[seen]);
+  }
   to_look_at_.erase(to_look_at_.begin(), to_look_at_.begin() + static_cast<std::ptrdiff_t>(seen));
 }
 
@@ -71,7 +75,10 @@ void FluidRelinearization::lookAt(VariableId v) {
   const bool stale = turn > params_.leisurely_rad,
              far = states_.mismatchBound(v) >= params_.compared_share * tolerance_;
   if (!stale && !far) return;
-  if (far) states_.markCompared(v);
+  if (far) {
+    states_.markCompared(v);
+    for (const FactorId f : graph_.factorsOf(v)) models_.fetch(f);
+  }
   bool followed = true;
   for (const FactorId f : graph_.factorsOf(v)) {
     if (models_.isProvisional(f) || entersLinearly(v, f, graph_)) continue;
@@ -210,27 +217,30 @@ void FluidRelinearization::relinearizeStale() {
 void FluidRelinearization::relinearizeWhatIsFree() {
   for (const int c : work_.removed())
     for (const VariableId v : tree_[c].frontalVariables())
-      if (isStale(v) && costOfRelinearizing(v).work.scalars == 0) relinearize(v);
+      if (isStale(v) && isFree(v)) relinearize(v);
 }
 
 /// Relinearizes the worst first, as far as the allowances reach. Variables so far off that the solution suffers have
 /// one allowance; the others, which can wait, have another.
 FluidRelinearization::Reach FluidRelinearization::relinearizeWorst() {
-  const auto worse = [&](VariableId a, VariableId b) {
-    const double turn_a = staleness_rad_[a.value], turn_b = staleness_rad_[b.value];
-    return turn_a > turn_b || (turn_a == turn_b && a < b);
+  const auto worse = [](const Stale& a, const Stale& b) {
+    return a.turn_rad > b.turn_rad || (a.turn_rad == b.turn_rad && a.variable < b.variable);
   };
+  ranked_.clear();
+  for (const VariableId v : stale_) ranked_.push_back({staleness_rad_[v.value], v});
   double urgent_flops = params_.urgent_flops, polish_flops = params_.polish_flops;
   auto reach = Reach::kWithin;
-  for (std::size_t done = 0; done < stale_.size() && reach == Reach::kWithin;) {
-    const std::size_t end = std::min(done + kWorstAtOnce, stale_.size());
-    std::partial_sort(stale_.begin() + done, stale_.begin() + end, stale_.end(), worse);
-    for (; done < end && reach != Reach::kBeyondBudget; ++done) {
-      const VariableId v = stale_[done];
+  for (auto next = ranked_.begin(); next != ranked_.end() && reach == Reach::kWithin;) {
+    const auto end = next + std::min(kWorstAtOnce, ranked_.end() - next);
+    std::partial_sort(next, end, ranked_.end(), worse);
+    for (; next != end && reach != Reach::kBeyondBudget; ++next) {
+      const VariableId v = next->variable;
       if (!isStale(v)) continue;  // twice in the list, or of the region of one before it
       double& flops_left = staleness_rad_[v.value] > params_.relinearize_rad ? urgent_flops : polish_flops;
       reach = std::max(reach, relinearizeRegion(v, staleness_rad_[v.value], flops_left));
     }
+    const auto done = std::remove_if(next, ranked_.end(), [&](const Stale& other) { return !isStale(other.variable); });
+    ranked_.erase(done, ranked_.end());
   }
   return reach;
 }
@@ -269,7 +279,7 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeRegion(VariableId w
 }
 
 FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v, double& flops_left) {
-  const Cost cost = costOfRelinearizing(v);
+  const Cost cost = costOfRelinearizing(v, flops_left);
   if (!budget_.affords(cost.work)) return Reach::kBeyondBudget;
   if (cost.volume > flops_left) return Reach::kBeyondAllowance;
   budget_.plan(cost.work);
@@ -278,10 +288,11 @@ FluidRelinearization::Reach FluidRelinearization::relinearizeWithin(VariableId v
   return Reach::kWithin;
 }
 
-/// Cost of the cliques that are eliminated anew only for the variable.
-FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v) {
+/// Cost of the cliques that are eliminated anew only for the variable; of a part of them where that is too much.
+FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId v, double most_volume) {
   counted_.reset(tree_.slots());
   const bool counts_flops = budget_.limitsFlops();  // they would take a twentieth of an update to count
+  const bool limited = budget_.limited();
   CliqueCost work;
   double volume = 0;
   for (const FactorId f : graph_.factorsOf(v)) {
@@ -291,9 +302,18 @@ FluidRelinearization::Cost FluidRelinearization::costOfRelinearizing(VariableId 
       work.scalars += tree_[c].frontal_size;
       volume += static_cast<double>(tree_[c].frontal_size) * tree_[c].size * tree_[c].size;
       if (counts_flops) work.flops += eliminationCost(tree_[c]).flops;
+      if (limited ? !budget_.affords(work) : volume > most_volume) return {work, volume};
     }
   }
   return {work, volume};
+}
+
+/// True when all cliques that the variable's relinearization concerns are eliminated anew in any case.
+bool FluidRelinearization::isFree(VariableId v) const {
+  return std::ranges::all_of(graph_.factorsOf(v), [&](FactorId f) {
+    const int owner = new_factors_.contains(f.value) ? -1 : tree_.ownerOf(graph_.variablesOf(f));
+    return owner < 0 || work_.isEliminated(owner);
+  });
 }
 
 /// Moves the variable's linearization point. Its factors get new Jacobians when those of all variables have moved.

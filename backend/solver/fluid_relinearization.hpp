@@ -62,6 +62,10 @@ class FluidRelinearization {
     FactorId factor;
     double mismatch = 0;
   };
+  struct Stale {
+    double turn_rad = 0;
+    VariableId variable;
+  };
   /// Outcome of a relinearization under the allowances and the budget.
   enum class Reach : char { kWithin, kBeyondAllowance, kBeyondBudget };
   /// The allowances count the cliques' volume, apart from the budget.
@@ -82,7 +86,8 @@ class FluidRelinearization {
   void relinearizeAtRest();
   Reach relinearizeRegion(VariableId worst, double worst_turn_rad, double& flops_left);
   Reach relinearizeWithin(VariableId v, double& flops_left);
-  Cost costOfRelinearizing(VariableId v);
+  Cost costOfRelinearizing(VariableId v, double most_volume);
+  bool isFree(VariableId v) const;
   void relinearize(VariableId v);
   void correctResiduals();
   bool waitsForJacobians(const OffModel& off) const;
@@ -102,6 +107,7 @@ class FluidRelinearization {
   std::vector<char> half_followed_;     // per factor: to be compared when all of its variables have followed
   std::vector<OffModel> off_;           // models to correct in the next step
   std::vector<VariableId> stale_;       // whose linearization points are off
+  std::vector<Stale> ranked_;           // the same with how far they are off; scratch
   std::vector<double> staleness_rad_;   // per variable: its turn when it became stale, 0 when it is not
   int next_at_rest_ = 0;                // variable to look at
   double rest_flops_left_ = 0;          // saved up by the steps so far

@@ -51,7 +51,8 @@ class IncrementalSolver {
     /// Scalars substituted in an update up to which it may take a further step; 0: no limit.
     std::int64_t iterated_scalars = 3000;
     EliminationBudget::Params budget;
-    int kept_eliminations = 0;  // see Eliminator
+    int kept_eliminations = 0;  // see Eliminator, as for the next one
+    std::size_t kept_bytes = 0;
   };
   struct Report {
     std::vector<SolverProblem> problems;
@@ -148,7 +149,7 @@ class IncrementalSolver {
   Params params_;
   FactorGraph graph_;
   EliminationTree tree_;
-  Eliminator eliminator_{graph_, tree_, params_.kept_eliminations};
+  Eliminator eliminator_{graph_, tree_, params_.kept_eliminations, params_.kept_bytes};
   AffectedOrder reordered_{graph_, tree_};
   CliqueWork work_{tree_};
   EliminationBudget budget_{params_.budget};

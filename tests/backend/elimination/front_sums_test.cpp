@@ -79,5 +79,62 @@ TEST(FrontSums, OfAWholeMatrixTheLowerTriangleCounts) {
   }
 }
 
+/// Columns of Jacobians of one to three poses, and of their residual.
+const std::vector<std::vector<RowSpan>> kPoses{{{0, 22, 6}, {6, 28, 1}},
+                                               {{3, 2, 3}, {0, 25, 3}, {6, 28, 1}},
+                                               {{6, 2, 6}, {0, 12, 6}, {12, 28, 1}},
+                                               {{3, 0, 6}, {0, 8, 3}, {9, 11, 6}, {15, 28, 1}}};
+
+TEST(FrontSums, TheSquareOfAJacobianIsThatOfThePaddedProduct) {
+  std::mt19937 random(3);
+  for (const int rows : {3, 6, 12})
+    for (const auto& spans : kPoses) {
+      const int columns = spans.back().from + 1;
+      const MatrixXd jacobian = test::randomMatrix(rows, columns, random);
+      PaddedMatrix product(MatrixXd::Zero(columns, columns));
+      addJacobianProduct(jacobian.data(), rows, columns, product.data(), product.ld());
+      const MatrixXd whole = product.view().selfadjointView<Eigen::Lower>();
+      ZeroFront front;
+      for (int times = 1; times <= 2; ++times) {
+        ASSERT_TRUE(addSquareToFront(front.columns(), jacobian.data(), rows, spans));
+        const MatrixXd lower = front.lower().triangularView<Eigen::Lower>();
+        EXPECT_EQ(lower, times * expectedSum(whole, spans));
+      }
+      EXPECT_TRUE(front.panel.intactAround() && front.update.intactAround());
+    }
+}
+
+TEST(FrontSums, OtherSizesOfJacobiansAreLeftToTheCaller) {
+  const MatrixXd jacobian = MatrixXd::Ones(6, 7);
+  const std::vector<RowSpan> vector{{0, 2, 4}, {4, 28, 1}}, pose{{0, 2, 6}, {6, 28, 1}};
+  ZeroFront front;
+  EXPECT_FALSE(addSquareToFront(front.columns(), jacobian.data(), 6, vector));
+  EXPECT_FALSE(addSquareToFront(front.columns(), jacobian.data(), 2, pose));
+  EXPECT_EQ(front.lower(), MatrixXd::Zero(kSize, kSize));
+}
+
+TEST(FrontSums, ALowerTriangleIsClearedWithTheBlocksOnItsDiagonal) {
+  for (const int size : {1, 4, 7, 21}) {
+    PaddedMatrix matrix(MatrixXd::Ones(size, size));
+    clearLowerTriangle(matrix.data(), matrix.ld(), size);
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < size; ++i) EXPECT_EQ(matrix.view()(i, j), i / 4 < j / 4 ? 1 : 0);
+    EXPECT_TRUE(matrix.intactAround());
+  }
+}
+
+TEST(FrontSums, APackedTriangleHasTheColumnsWithoutGaps) {
+  std::mt19937 random(4);
+  for (const int size : {1, 2, 5, 8, 23}) {
+    PaddedMatrix matrix(randomInformation(size, random));
+    std::vector<double> packed(PackedTriangle::length(size) + 1, -1.0);
+    packLowerTriangle(matrix.data(), matrix.ld(), size, packed.data());
+    const PackedTriangle triangle{packed.data(), size};
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) EXPECT_EQ(triangle.column(j)[i], matrix.view()(i, j));
+    EXPECT_EQ(packed.back(), -1.0);  // nothing past the end is written
+  }
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -19,10 +19,11 @@ constexpr int kMostInARow = 16;
 struct Drive {
   static constexpr std::size_t kWindow = 80;
 
-  explicit Drive(int kept_eliminations)
+  explicit Drive(int kept_eliminations, std::size_t kept_bytes = 0)
       : solver({.relinearization = {.relinearize_rad = 1e-3, .leisurely_rad = 1e-4},
                 .budget = {},
-                .kept_eliminations = kept_eliminations}),
+                .kept_eliminations = kept_eliminations,
+                .kept_bytes = kept_bytes}),
         graph(solver, 5, 2) {}
 
   void addFrame() {
@@ -89,6 +90,13 @@ TEST(UpdateMatrices, WithoutALimitAllAreKept) {
   Drive drive(0);
   for (int frame = 0; frame < 100; ++frame) drive.addFrame();
   EXPECT_EQ(Without(drive.solver.tree()).cliques, 0);
+}
+
+TEST(UpdateMatrices, AllAreKeptWhileTheyTakeLittleMemory) {
+  Drive within(2, std::size_t{1} << 30), beyond(2, 1);
+  for (int frame = 0; frame < 100; ++frame) within.addFrame(), beyond.addFrame();
+  EXPECT_EQ(Without(within.solver.tree()).cliques, 0);
+  EXPECT_GT(Without(beyond.solver.tree()).cliques, 0);
 }
 
 }  // namespace
