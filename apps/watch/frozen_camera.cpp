@@ -10,30 +10,32 @@ namespace motorcade {
 
 std::optional<FrozenCamera::Side> FrozenCamera::observe(const StereoFrame& pair) {
   constexpr double kMost = 0.5;
-  const double left = changedShare(pair.left, left_, pair.head.frame),
-               right = changedShare(pair.right, right_, pair.head.frame);
-  left_.repeated = left == 0 && right > kMost ? left_.repeated + 1 : 0;
-  right_.repeated = right == 0 && left > kMost ? right_.repeated + 1 : 0;
+  const bool left = repeats(pair.left, left_, pair.head.frame), right = repeats(pair.right, right_, pair.head.frame);
+  left_.repeated = left && !right && changedShare(right_) > kMost ? left_.repeated + 1 : 0;
+  right_.repeated = right && !left && changedShare(left_) > kMost ? right_.repeated + 1 : 0;
   for (const Camera* const camera : {&left_, &right_})
     if (camera->repeated == kPairs && hasContent(*camera)) return Side{camera->name, camera->since};
   return std::nullopt;
 }
 
-/// Share of the sampled pixels that differ from those of the pair before; all of them in the first pair. Remembers the
-/// image.
-double FrozenCamera::changedShare(const Image& image, Camera& camera, FrameId frame) {
-  constexpr int kStep_px = 8;
-  std::vector<std::uint8_t> rows;
-  rows.reserve(static_cast<std::size_t>(image.width()) * (image.height() / kStep_px + 1));
+/// Remembers the image; true if it is that of the pair before.
+bool FrozenCamera::repeats(const Image& image, Camera& camera, FrameId frame) {
+  constexpr int kStep_px = 32;
+  std::swap(camera.rows, camera.before);
+  camera.rows.clear();
   for (int y = kStep_px / 2; y < image.height(); y += kStep_px)
-    rows.insert(rows.end(), image.row(y), image.row(y) + image.width());
-  const std::vector<std::uint8_t> before = std::exchange(camera.rows, std::move(rows));
-  if (before == camera.rows) return 0;
-  camera.since = frame;
-  if (before.size() != camera.rows.size()) return 1;
-  const auto changed = std::transform_reduce(before.begin(), before.end(), camera.rows.begin(), std::size_t{0},
-                                             std::plus(), std::not_equal_to());
-  return static_cast<double>(changed) / static_cast<double>(before.size());
+    camera.rows.insert(camera.rows.end(), image.row(y), image.row(y) + image.width());
+  const bool same = camera.rows == camera.before;
+  if (!same) camera.since = frame;
+  return same;
+}
+
+/// Share of the remembered pixels that differ from those of the pair before.
+double FrozenCamera::changedShare(const Camera& camera) {
+  if (camera.before.size() != camera.rows.size()) return 1;
+  const auto changed = std::transform_reduce(camera.before.begin(), camera.before.end(), camera.rows.begin(),
+                                             std::size_t{0}, std::plus(), std::not_equal_to());
+  return static_cast<double>(changed) / static_cast<double>(camera.rows.size());
 }
 
 bool FrozenCamera::hasContent(const Camera& camera) {

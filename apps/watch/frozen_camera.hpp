@@ -26,11 +26,12 @@ class FrozenCamera {
  private:
   struct Camera {
     const char* name;
-    std::vector<std::uint8_t> rows{};  // every eighth of the image of the pair before
-    FrameId since{};                   // first pair with this image
+    std::vector<std::uint8_t> rows{}, before{};  // some of the newest image, and of the one before
+    FrameId since{};                             // first pair with the newest image
     int repeated = 0;
   };
-  static double changedShare(const Image& image, Camera& camera, FrameId frame);
+  static bool repeats(const Image& image, Camera& camera, FrameId frame);
+  static double changedShare(const Camera& camera);
   static bool hasContent(const Camera& camera);
 
   Camera left_{"left"}, right_{"right"};
