@@ -63,12 +63,12 @@ HWY_INLINE void addDiagonal(const FrontColumns& front, Column column, const RowS
     addTo(to, column.at + columns.from + j, columns.size - j);
 }
 
-/// `columnOf` gives the matrix's columns.
+/// `column_of` gives the matrix's columns.
 template <class ColumnOf>
-HWY_INLINE void addSymmetric(const FrontColumns& front, const ColumnOf& columnOf, std::span<const RowSpan> spans) {
+HWY_INLINE void addSymmetric(const FrontColumns& front, const ColumnOf& column_of, std::span<const RowSpan> spans) {
   for (std::size_t b = 0; b < spans.size(); ++b) {
     const RowSpan columns = spans[b];
-    const Column first = columnOf(columns.from);
+    const Column first = column_of(columns.from);
     addDiagonal(front, first, columns);
     for (const RowSpan& rows : spans.subspan(b + 1)) {
       if (rows.to < columns.to)
