@@ -94,8 +94,8 @@ void InputCheck::observe(const StereoFrame& pair) {
 void InputCheck::observeLight(const StereoFrame& pair) {
   left_means_.push_back(meanGray(pair.left));
   right_means_.push_back(meanGray(pair.right));
-  if (const auto grain = grainOf(pair.left)) left_grains_.push_back(*grain);
-  if (const auto grain = grainOf(pair.right)) right_grains_.push_back(*grain);
+  if (const auto grain = grainOf(pair.left)) left_grains_.push_back(grain->smooth_gray);
+  if (const auto grain = grainOf(pair.right)) right_grains_.push_back(grain->smooth_gray);
 }
 
 /// Matches with the neighboring pairs only if the pair's own rows agree badly, as it costs as much again, twice.

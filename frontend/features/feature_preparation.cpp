@@ -28,15 +28,13 @@ FeaturesPtr FeaturePreparation::operator()(const StereoFramePtr& frame) const {
   features.frame = frame;
   if (frame->rejected()) return std::make_shared<const Features>(std::move(features));
 
-  constexpr float kUsualGrain = 1;
-  const float left_grain = grainOf(frame->left).value_or(kUsualGrain),
-              right_grain = grainOf(frame->right).value_or(kUsualGrain);
-  const float grain = std::max(left_grain, right_grain);
+  const Grain left_grain = grainOf(frame->left).value_or(Grain{}),
+              right_grain = grainOf(frame->right).value_or(Grain{}), grain = left_grain.with(right_grain);
   const Image left = denoised(frame->left, grain, pool_), right = denoised(frame->right, grain, pool_);
   features.left = buildPyramid(left, kPyramidLevels, pool_);
   features.right = buildPyramid(right, kPyramidLevels, pool_);
   if (!detect_sift_) {
-    features.corners = detect_corners_(left, scoreShare(left_grain), frame->inputs.ignored.get());
+    features.corners = detect_corners_(left, scoreShare(left_grain.smooth_gray), frame->inputs.ignored.get());
   } else {
     SiftPoints in_left = (*detect_sift_)(left), in_right = (*detect_sift_)(right);
     features.corners = std::move(in_left.corners);

@@ -84,28 +84,45 @@ constexpr std::size_t kMinNeighborhoods = 12;
 /// Grain up to which images stay as they are, and from which on all of an image is smoothed. At 10, smoothed images
 /// lose more accuracy of the path than they gain; at 20, matches in images that are not smoothed are half as many.
 constexpr float kHarmlessGrain = 8, kSmoothedGrain = 16;
+constexpr float kUsualContrast = 75;  // gray levels, of the real drives on which these were measured
+constexpr float kWeightOfRelative = 0.5F;
+
+/// The value below which so many quarters of the values lie.
+float quartile(std::vector<float>& values, std::ptrdiff_t quarters) {
+  const auto at = values.begin() + std::ssize(values) * quarters / 4;
+  std::ranges::nth_element(values, at);
+  return *at;
+}
 
 }  // namespace
 
 float grainAround(const Image& image, int x, int y) { return MOTORCADE_KERNEL(grainAt)(image, x, y); }
 
-std::optional<float> grainOf(const Image& image) {
+Grain Grain::with(const Grain& other) const {
+  return {std::max(smooth_gray, other.smooth_gray), std::max(relative_gray, other.relative_gray)};
+}
+
+std::optional<Grain> grainOf(const Image& image) {
   constexpr std::uint8_t kWhite = 255;
-  std::vector<float> grains;
+  constexpr float kMedianOverFirstQuartile = 1.15F;  // of the neighborhoods' grains, in white noise
+  std::vector<float> grains, levels;
   for (int y = kGrid_px / 2; y < image.height() - HWY_NAMESPACE::kGrainHalfWindow_px - 1; y += kGrid_px) {
     for (int x = kGrid_px / 2; x < image.width() - HWY_NAMESPACE::kGrainHalfWindow_px - 1; x += kGrid_px) {
       const std::uint8_t gray = image.at(x, y);
-      if (gray != 0 && gray != kWhite) grains.push_back(grainAround(image, x, y));
+      if (gray == 0 || gray == kWhite) continue;
+      grains.push_back(grainAround(image, x, y));
+      levels.push_back(gray);
     }
   }
   if (grains.size() < kMinNeighborhoods) return std::nullopt;
-  const auto quartile = grains.begin() + static_cast<std::ptrdiff_t>(grains.size() / 4);
-  std::ranges::nth_element(grains, quartile);
-  return *quartile;
+  const float contrast = std::max(quartile(levels, 3) - quartile(levels, 1), 1.0F);
+  return Grain{.smooth_gray = quartile(grains, 1),
+               .relative_gray = quartile(grains, 2) / kMedianOverFirstQuartile * kUsualContrast / contrast};
 }
 
-Image denoised(const Image& image, float grain_gray, ImagePool& pool) {
-  const float share = std::clamp((grain_gray - kHarmlessGrain) / (kSmoothedGrain - kHarmlessGrain), 0.0F, 1.0F);
+Image denoised(const Image& image, const Grain& grain, ImagePool& pool) {
+  const float counts = std::max(grain.smooth_gray, kWeightOfRelative * grain.relative_gray);
+  const float share = std::clamp((counts - kHarmlessGrain) / (kSmoothedGrain - kHarmlessGrain), 0.0F, 1.0F);
   const int sixteenths = static_cast<int>(std::lround(share * HWY_NAMESPACE::kWhole));
   return sixteenths == 0 ? image : MOTORCADE_KERNEL(smoothed)(image, sixteenths, pool);
 }

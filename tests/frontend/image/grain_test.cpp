@@ -37,9 +37,21 @@ TEST(Grain, IsTheNoiseOfSmoothParts) {
   for (const double sigma : {2.0, 5.0, 10.0, 20.0}) {
     const auto grain = grainOf(noisy(sigma));
     ASSERT_TRUE(grain);
-    EXPECT_NEAR(*grain, sigma, 0.15 * sigma);
+    EXPECT_NEAR(grain->smooth_gray, sigma, 0.15 * sigma);
   }
-  EXPECT_LT(grainOf(noisy(0)).value_or(9), 0.4F);  // rounding to whole grays alone is 0.3
+  EXPECT_LT(grainOf(noisy(0))->smooth_gray, 0.4F);  // rounding to whole grays alone is 0.3
+}
+
+/// A dark image of the same scene with as much less noise.
+TEST(Grain, IsTheSameShareOfTheContrastInTheDark) {
+  constexpr double kExposure = 0.25, kSigma = 16;
+  const Image bright = noisy(kSigma);
+  const Image dark = test::render(400, 300, [](double u, double v) { return kExposure * kSmoothTexture(u, v); },
+                                  {.noise = kExposure * kSigma});
+  const auto by_day = grainOf(bright), by_night = grainOf(dark);
+  ASSERT_TRUE(by_day && by_night);
+  EXPECT_NEAR(by_night->smooth_gray, kExposure * by_day->smooth_gray, 0.5);
+  EXPECT_NEAR(by_night->relative_gray / by_day->relative_gray, 1, 0.1);
 }
 
 TEST(Grain, IsUnknownWhereTheImageIsClippedOrTiny) {
@@ -50,20 +62,29 @@ TEST(Grain, IsUnknownWhereTheImageIsClippedOrTiny) {
 TEST(Denoised, LeavesImagesWithTheUsualGrainAsTheyAre) {
   ImagePool pool;
   const Image image = noisy(3);
-  EXPECT_EQ(denoised(image, grainOf(image).value_or(0), pool).row(0), image.row(0));  // the same buffer
+  EXPECT_EQ(denoised(image, *grainOf(image), pool).row(0), image.row(0));  // the same buffer
 }
 
 TEST(Denoised, ComesNearerToTheSceneTheMoreThereIsToGain) {
   ImagePool pool;
   const Image truth = noisy(0);
-  EXPECT_LT(rmsAgainst(denoised(noisy(10), 10, pool), truth), 9);
-  EXPECT_LT(rmsAgainst(denoised(noisy(20), 20, pool), truth), 20.0 / 3);
+  EXPECT_LT(rmsAgainst(denoised(noisy(10), {.smooth_gray = 10}, pool), truth), 9);
+  EXPECT_LT(rmsAgainst(denoised(noisy(20), {.smooth_gray = 20}, pool), truth), 20.0 / 3);
+}
+
+TEST(Denoised, CountsRelativeGrainHalf) {
+  ImagePool pool;
+  const Image image = noisy(3);
+  EXPECT_EQ(denoised(image, {.smooth_gray = 3, .relative_gray = 15}, pool).row(0), image.row(0));
+  const Image by_relative = denoised(image, {.smooth_gray = 3, .relative_gray = 32}, pool),
+              by_smooth = denoised(image, {.smooth_gray = 16}, pool);
+  EXPECT_EQ(rmsAgainst(by_relative, by_smooth), 0);
 }
 
 TEST(Denoised, IsTheBinomialMeanUpToTheBorder) {
   ImagePool pool;
   const Image image = test::render(37, 23, test::Texture(62), {.noise = 20});
-  const Image smooth = denoised(image, 20, pool);
+  const Image smooth = denoised(image, {.smooth_gray = 20}, pool);
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) ASSERT_NEAR(smooth.at(x, y), binomialMean(image, x, y), 0.51);
 }
