@@ -150,7 +150,7 @@ void addSquareOf(const FrontColumns& front, const double* J, std::span<const Row
 
 }  // namespace
 
-/// With a constant in place of `value` the compiler would call the C library for each column.
+/// The value is an argument, as the compiler would call the C library for each column to store a constant.
 void fillTriangle(double* matrix, int stride, int columns, double value) {
   for (int j = 0; j < columns; ++j, matrix += stride)
     for (int i = j / kLanes * kLanes; i < stride; i += kLanes) store(matrix + i, broadcast(value));

@@ -20,7 +20,7 @@ struct FrontColumns {
     if (column < panel_columns) return panel + std::ptrdiff_t(column) * panel_stride;
     return update_matrix + std::ptrdiff_t(column - panel_columns) * update_stride - panel_columns;
   }
-  /// From a column to the next one on the same side of the border.
+  /// Numbers from a column to the next one on the same side of the border.
   int strideAt(int column) const { return column < panel_columns ? panel_stride : update_stride; }
 };
 

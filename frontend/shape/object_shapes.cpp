@@ -56,8 +56,8 @@ FaceInformation nearFaceAtPoints(const ObjectView& view) {
   return near;
 }
 
-/// What the cuboid of a walker holds where points are few: the origin, which is the middle of those that were first
-/// followed. Otherwise its outline may take in a car that is parked behind, and then move over to it.
+/// The body's origin, which the cuboid of a walker holds where points are few: it is the middle of those that were
+/// first followed. Otherwise the outline may take in a car that is parked behind, and then move over to it.
 Eigen::AlignedBox3d atOrigin() {
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   return {origin, origin};
