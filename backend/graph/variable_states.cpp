@@ -66,6 +66,12 @@ void VariableStates::moveLinearizationPoint(VariableId id) {
   state.x_linearized = state.x;
 }
 
+void VariableStates::returnToLinearizationPoint(VariableId id) {
+  VariableState& state = (*this)[id];
+  state.applied_estimate = state.linearization_point;
+  state.x = state.x_applied = state.x_linearized;
+}
+
 double VariableStates::turnSinceLinearization(VariableId id) const {
   const VariableState& state = (*this)[id];
   return turnBetween(state, state.x_linearized, state.x);

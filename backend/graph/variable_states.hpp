@@ -55,6 +55,8 @@ class VariableStates {
   /// Moves the point at which the Jacobians of the variable's factors are taken to its estimate; linearize them after
   /// that.
   void moveLinearizationPoint(VariableId id);
+  /// Takes back all steps since then.
+  void returnToLinearizationPoint(VariableId id);
   /// Turn of the estimate since then [rad].
   double turnSinceLinearization(VariableId id) const;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,12 @@ class FluidRelinearization {
   void clear();
 
   bool anyModelOff() const { return !off_.empty(); }
+  /// Largest mismatch of the models that were found to be off, in standard deviations.
+  double worstMismatch() const {
+    double worst = 0;
+    for (const OffModel& off : off_) worst = std::max(worst, off.mismatch);
+    return worst;
+  }
   /// True when the budget put residuals off.
   bool correctionsWait() const { return corrections_wait_; }
   /// Number of variables whose relinearization was put off.

@@ -16,6 +16,9 @@ constexpr std::size_t kMostAppended = 200;
 
 /// Scalars that wait for substitution beyond which factors that wait may not take much of a budget.
 constexpr std::int64_t kBehind = 600;
+/// Mismatch of a linear model after a step, in standard deviations, at which the step was too long for it. Models that
+/// are about to be relinearized are off by some standard deviations, those of new objects by some tens.
+constexpr double kOvershot_sigmas = 100;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 /// Problem of a factor over these variables, which is left out.
@@ -118,6 +121,10 @@ const IncrementalSolver::Report& IncrementalSolver::update(Correction correction
   if (fluid) waiting_.admit(changes_.factors, changes_.touched, corrections_first_);
   touchVariablesOf(graph_, changes_.factors, changes_.touched);
   note(!fluid && batch_due ? batchStep(changes_.touched) : step(changes_, correction));
+  if (!overshot())
+    retaken_in_vain_ = false;
+  else if (!retaken_in_vain_)
+    retakeStep();
   const int steps = correction == Correction::kNow ? params_.iterations_per_update : 1;
   const auto costsLittle = [&] {
     return params_.iterated_scalars == 0 || report_.substituted_scalars <= params_.iterated_scalars;
@@ -190,6 +197,20 @@ IncrementalSolver::Step IncrementalSolver::batchStep(std::span<const VariableId>
   return {.corrections = {.relinearized_factors = static_cast<int>(factors.size())},
           .solved = substitute(0, kNoLimit),
           .of_all = true};
+}
+
+bool IncrementalSolver::overshot() const {
+  // A budget of work or time alone is a promise of how long an update takes.
+  return params_.policy == Policy::kFluid && params_.budget.scalars > 0 &&
+         relinearization_.worstMismatch() > kOvershot_sigmas;
+}
+
+/// Jacobians of one region that were taken at different estimates do not agree on what a common motion of the region
+/// leaves as it is. Where little else holds the region, as after a gap, a step may run away along that motion.
+void IncrementalSolver::retakeStep() {
+  for (const VariableId v : graph_.variables()) graph_.states().returnToLinearizationPoint(v);
+  note(batchStep(changes_.touched));
+  retaken_in_vain_ = overshot();
 }
 
 const IncrementalSolver::Report& IncrementalSolver::converge(int max_iterations, double tolerance) {

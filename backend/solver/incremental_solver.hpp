@@ -141,6 +141,10 @@ class IncrementalSolver {
   Step step(const Changes& changes, Correction correction);
   /// Relinearizes and reorders everything.
   Step batchStep(std::span<const VariableId> touched);
+  /// True when a step that the budget kept from new Jacobians went farther than its linear models hold.
+  bool overshot() const;
+  /// Takes such a step anew, from where the Jacobians hold, with new ones of everything.
+  void retakeStep();
   void rebuildTop(const Changes& changes);
   BackSubstitution::Spread spreadOfUpdate() const;
   BackSubstitution::Result substitute(double spread_sigmas, std::int64_t most_scalars,
@@ -163,6 +167,7 @@ class IncrementalSolver {
   double spread_sigmas_ = 0;                                          // of the newest step
   BackSubstitution::Spread spread_ = BackSubstitution::Spread::kAll;  // of the update at hand
   bool spread_all_next_ = false;
+  bool retaken_in_vain_ = false;    // the last overshooting step: its models hold no farther
   bool corrections_first_ = false;  // in the update at hand: factors that wait come no nearer
   Changes changes_;                 // since the last update, as well as the factors that were left out
   std::vector<SolverProblem> refused_;

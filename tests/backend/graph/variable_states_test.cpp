@@ -53,6 +53,23 @@ TEST(VariableStates, TheTurnSinceLinearizationIsTheAngle) {
   }
 }
 
+TEST(VariableStates, StepsAreTakenBackToTheLinearizationPoint) {
+  RandomWorld world(6, RandomWorld::Kind::kSpace);
+  FactorGraph graph;
+  VariableStates& states = graph.states();
+  const VariableId v = world.addVariable(graph);
+  const auto poseNow = [&] { return std::get<SE3>(states.estimate(v)); };
+  states[v].x[0] += 1;
+  states.moveLinearizationPoint(v);
+  const SE3 linearized = poseNow();
+  states[v].x[0] += 1, states[v].x[4] += 0.3;
+  states.apply(v);
+  EXPECT_GT((linearized.inverse() * poseNow()).log().norm(), 0.5);
+  states.returnToLinearizationPoint(v);
+  EXPECT_EQ((linearized.inverse() * poseNow()).log().norm(), 0);
+  EXPECT_EQ(states.turnSinceLinearization(v), 0);
+}
+
 TEST(VariableStates, TheBoundOfAMismatchGrowsWithTheTurnOfAPoseAndWithTheStepOfAVector) {
   RandomWorld world(5, RandomWorld::Kind::kSpace);
   FactorGraph graph;

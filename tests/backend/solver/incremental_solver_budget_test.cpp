@@ -226,6 +226,18 @@ TEST(IncrementalSolverBudget, JacobiansThatArePutOffLetNothingDiverge) {
   EXPECT_NEAR(path.solver.counters().chi2, unlimited.solver.counters().chi2, 1e-6);
 }
 
+/// The end is measured so far away that linear models hold by no means, and the budget leaves no new Jacobians.
+TEST(IncrementalSolverBudget, AStepBeyondItsLinearModelsIsTakenAnewWithAllJacobians) {
+  for (const double angle_rad : {0.8, 1.0}) {
+    BentPath path(1);
+    const SE3 end = BentPath::endAt(angle_rad);
+    path.measure(path.x.back(), end, test::isotropicNoise(0.1, 0.1));
+    EXPECT_GT(path.solver.update().relinearized_factors, BentPath::kPoses);
+    EXPECT_LT(path.distanceTo(end), 1.0);  // 20 m and more with the old Jacobians
+    EXPECT_EQ(path.solver.update().relinearized_factors, 0) << "one anew is enough";
+  }
+}
+
 /// A path whose newest pose is measured in each update, which moves all of it; the linear models stay what they are.
 struct MeasuredPath {
   explicit MeasuredPath(std::int64_t spread_scalars) : solver(linear(spread_scalars)) {
