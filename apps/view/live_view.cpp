@@ -40,8 +40,7 @@ std::vector<GroundCandidate> groundCandidates(const FrameMeasurements& measureme
     Eigen::Vector3d uvd_px = point.uvd_px.cast<double>();
     uvd_px.z() += measurements.disparity_offset_px;
     if (!(uvd_px.z() > 1)) continue;
-    const Eigen::Vector3d p_cam = camera.triangulate(uvd_px);
-    candidates.push_back({p_cam, std::abs(p_cam.y()) / uvd_px.z() * static_cast<double>(point.sigma_px.z())});
+    candidates.push_back({camera.triangulate(uvd_px), static_cast<double>(point.sigma_px.z()) / uvd_px.z()});
   }
   return candidates;
 }

@@ -14,10 +14,11 @@ namespace motorcade {
 namespace {
 
 constexpr double kMaxDepth_m = 30, kMaxSide_m = 10;  // where roads are flat and a height is known to centimeters
-constexpr double kMinHeightShare = 0.5;              // of the lowest plane allowed: points above it lie on no road
+constexpr double kMinHeightShare = 0.5;              // of the camera's height: points above it lie on no road
 constexpr double kRoughness_m = 0.08;                // of a road around its plane: camber, curbs' feet, ruts
 constexpr double kMaxHeightNoise_m = 0.3;            // higher objects are no road, however little their height is known
 constexpr int kHypotheses = 60;                      // find a road that carries half of the points but for 1 in 3000
+constexpr int kFirstHypotheses = 240;                // and one that carries a third but for 1 in 8000
 constexpr int kMinInliers = 15;                      // fewer are a curb or a car's roof as well
 constexpr double kMemory = 0.7;  // weight of the plane before: two thirds of a new pitch show within three frames
 constexpr double kMinTriangle_m2 = 0.5;  // twice its area: thinner and smaller ones carry no plane
@@ -62,45 +63,71 @@ bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
          plane.normal_cam.y() > cosine(params_.max_tilt_rad);
 }
 
+double GroundPlaneEstimator::heightSigma_m(const GroundCandidate& point) const {
+  return std::abs(plane_.normal_cam.dot(point.p_cam)) * point.depth_ratio;
+}
+
 GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> points, std::uint64_t seed) {
-  std::vector<LowPoint> low;
-  for (const auto& c : points) {
-    const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
-    if (near && c.p_cam.y() > kMinHeightShare * params_.min_height_m)
-      low.push_back({c.p_cam, hypotenuse(kRoughness_m, c.height_sigma_m)});
-  }
+  const std::vector<LowPoint> low = lowPoints(points);
   if (static_cast<int>(low.size()) < kMinInliers) return plane_;
-  const auto plane = refine(low, bestHypothesis(low, seed));
-  if (!plane || !plausible(*plane)) return plane_;
+  const std::vector<GroundPlane> planes = hypotheses(low, seed);
+  const std::vector<double> supports = planeSupports(planes, low);
+  const auto fitted = [&](auto scoreOf) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < planes.size(); ++i)
+      if (scoreOf(i) > scoreOf(best)) best = i;
+    auto plane = refine(low, planes[best]);
+    if (plane && !plausible(*plane)) plane.reset();
+    return plane;
+  };
+  if (const auto alone = fitted([&](std::size_t i) { return supports[i]; })) mounting_.add(*alone);
+  const auto plane = fitted([&](std::size_t i) { return supports[i] * mounting_.likelihoodOf(planes[i]); });
+  if (!plane) return plane_;
   plane_.normal_cam = (kMemory * plane_.normal_cam + (1 - kMemory) * plane->normal_cam).normalized();
   plane_.height_m = kMemory * plane_.height_m + (1 - kMemory) * plane->height_m;
   return plane_;
 }
 
-/// The plane with most support, of random planes and the last one.
-GroundPlane GroundPlaneEstimator::bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const {
+std::vector<LowPoint> GroundPlaneEstimator::lowPoints(std::span<const GroundCandidate> points) const {
+  // Until the mounting is known, the road may rise in the image as steeply as the camera may look down.
+  GroundPlane highest{{0, cosine(params_.max_tilt_rad), sine(params_.max_tilt_rad)}, params_.min_height_m};
+  if (mounting_.isKnown()) highest = mounting_.plane();
+  highest.height_m *= kMinHeightShare;
+  std::vector<LowPoint> low;
+  for (const auto& c : points) {
+    const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
+    if (near && highest.heightOf_m(c.p_cam) < 0) low.push_back({c.p_cam, hypotenuse(kRoughness_m, heightSigma_m(c))});
+  }
+  return low;
+}
+
+/// Random planes, the last one and the mounting's.
+std::vector<GroundPlane> GroundPlaneEstimator::hypotheses(const std::vector<LowPoint>& points,
+                                                          std::uint64_t seed) const {
   std::vector<GroundPlane> planes{plane_};
+  if (mounting_.isKnown()) planes.push_back(mounting_.plane());
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
-  for (int k = 0; k < kHypotheses; ++k) {
+  const int count = mounting_.isKnown() ? kHypotheses : kFirstHypotheses;
+  for (int k = 0; k < count; ++k) {
     const auto plane = planeThrough(points[pick(random)].p_cam, points[pick(random)].p_cam, points[pick(random)].p_cam);
     if (plane && plausible(*plane)) planes.push_back(*plane);
   }
-  return planes[mostSupported(planes, points)];
+  return planes;
 }
 
 bool GroundPlaneEstimator::isOnGround(const GroundCandidate& point) const {
-  const double tolerance_m = kRoughness_m + std::min(kMaxHeightNoise_m, point.height_sigma_m);
+  const double tolerance_m = kRoughness_m + std::min(kMaxHeightNoise_m, heightSigma_m(point));
   return std::abs(plane_.heightOf_m(point.p_cam)) < tolerance_m;
 }
 
 std::vector<Parameter> parametersOf(GroundPlaneEstimator::Params& params) {
   return {numberParameter("initial_height_m", params.initial_height_m, {0.3, 4},
                           "the height of your camera, until the road is seen"),
-          numberParameter("min_height_m", params.min_height_m, {0.1, 1.5},
+          numberParameter("min_height_m", params.min_height_m, {0.1, 2},
                           "the lowest that the camera may be above the road"),
           numberParameter("max_height_m", params.max_height_m, {1.5, 10}, "the highest"),
-          numberParameter("max_tilt_rad", params.max_tilt_rad, {0.02, 0.5},
+          numberParameter("max_tilt_rad", params.max_tilt_rad, {0.02, 0.8},
                           "how far your camera may be tilted against the road")};
 }
 

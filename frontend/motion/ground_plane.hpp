@@ -10,6 +10,7 @@
 #include "core/parameters.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
+#include "frontend/motion/camera_mounting.hpp"
 
 namespace motorcade {
 
@@ -19,24 +20,24 @@ struct LowPoint {
   double tolerance_m;  // of its height above the plane
 };
 
-/// Index of the plane with most support, the first of several. A point near a plane supports it by a truncated
-/// quadratic; points below speak against it.
-std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points);
+/// Support of each plane, in points. A point near a plane supports it by a truncated quadratic; points below speak
+/// against it.
+std::vector<double> planeSupports(std::span<const GroundPlane> planes, std::span<const LowPoint> points);
 
 /// A triangulated point, as far as the road is concerned.
 struct GroundCandidate {
   Eigen::Vector3d p_cam;
-  double height_sigma_m;  // standard deviation of its height that its disparity leaves
+  double depth_ratio;  // standard deviation of its disparity by its disparity, which is that of its depth by its depth
 };
 
-/// Finds the road's plane by RANSAC over near, low points and a weighted fit, steadied by the previous frame's plane.
-/// Call in frame order: it remembers the last plane.
+/// Finds the road's plane by RANSAC over near, low points and a weighted fit, steadied by how the camera is mounted and
+/// by the previous frame's plane. Call in frame order: it remembers.
 class GroundPlaneEstimator {
  public:
   struct Params {
     double initial_height_m = 1.65;
-    double min_height_m = 0.8, max_height_m = 3.0;  // camera above the road
-    double max_tilt_rad = 0.12;                     // between plane normal and the camera's y axis
+    double min_height_m = 0.3, max_height_m = 4.5;  // camera above the road
+    double max_tilt_rad = 0.5;                      // between plane normal and the camera's y axis
   };
   explicit GroundPlaneEstimator(const Params& params);
 
@@ -47,11 +48,14 @@ class GroundPlaneEstimator {
   bool isOnGround(const GroundCandidate& point) const;
 
  private:
-  GroundPlane bestHypothesis(const std::vector<LowPoint>& points, std::uint64_t seed) const;
+  std::vector<LowPoint> lowPoints(std::span<const GroundCandidate> points) const;
+  std::vector<GroundPlane> hypotheses(const std::vector<LowPoint>& points, std::uint64_t seed) const;
   bool plausible(const GroundPlane& plane) const;
+  double heightSigma_m(const GroundCandidate& point) const;
 
   Params params_;
   GroundPlane plane_;
+  CameraMounting mounting_;
 };
 
 std::vector<Parameter> parametersOf(GroundPlaneEstimator::Params& params);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <vector>
 
 #include "core/instruction_set.hpp"
@@ -37,7 +36,7 @@ Doubles support(std::span<const LowPoint> points, const PlaneLanes& planes) {
 
 }  // namespace
 
-std::size_t bestOf(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
+std::vector<double> supportsOf(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
   std::vector<double> supports;
   for (std::size_t first = 0; first < planes.size(); first += kDoubleLanes) {
     PlaneLanes four{};
@@ -49,7 +48,7 @@ std::size_t bestOf(std::span<const GroundPlane> planes, std::span<const LowPoint
     const Doubles sums = support(points, four);
     for (std::size_t lane = 0; lane < count; ++lane) supports.push_back(sums[static_cast<int>(lane)]);
   }
-  return static_cast<std::size_t>(std::ranges::max_element(supports) - supports.begin());
+  return supports;
 }
 
 }  // namespace motorcade::HWY_NAMESPACE
@@ -58,10 +57,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace motorcade {
 
-MOTORCADE_EXPORT(bestOf);
+MOTORCADE_EXPORT(supportsOf);
 
-std::size_t mostSupported(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
-  return MOTORCADE_KERNEL(bestOf)(planes, points);
+std::vector<double> planeSupports(std::span<const GroundPlane> planes, std::span<const LowPoint> points) {
+  return MOTORCADE_KERNEL(supportsOf)(planes, points);
 }
 
 }  // namespace motorcade

@@ -266,8 +266,7 @@ GroundPlane SceneFlowSegmentation::findGround(const std::vector<bool>& violates_
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& flow = points[i].flow;
     if (violates_geometry[i] || (flow && movesSurely(camera_, *flow, motion.camera_speed_mps))) continue;
-    const Eigen::Vector3d p_cam = camera_.triangulate(points[i].uvd_px);
-    candidates.push_back({p_cam, std::abs(p_cam.y()) * points[i].sigma_px.z() / points[i].uvd_px.z()});
+    candidates.push_back({camera_.triangulate(points[i].uvd_px), points[i].sigma_px.z() / points[i].uvd_px.z()});
     of_candidate.push_back(i);
   }
   GroundPlane ground = ground_plane_(candidates, static_cast<std::uint64_t>(motion.head.frame.value));

@@ -161,6 +161,12 @@ MotionVerdict verdictOf(const Votes& votes, bool well_apart) {
 
 }  // namespace
 
+bool restsDespiteEstimate(const ObjectEstimate& object, double sigma_mps) {
+  constexpr double kStarted_mps = 1;  // from which on the tracker takes a stopped object as moving
+  const double speed_mps = object.velocity_world_mps.norm();
+  return object.state == ObjectState::kStopped && speed_mps > kStarted_mps && speed_mps > 2 * sigma_mps;
+}
+
 MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDisparities* disparities,
                             const ObjectView& view, const StereoCamera& camera) {
   if (!view.well_before) return MotionVerdict::kUntold;

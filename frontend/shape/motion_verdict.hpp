@@ -31,6 +31,10 @@ class OtherBodies {
   std::vector<Body> bodies_;
 };
 
+/// True where the tracker measures rest, while the estimate goes on: the track never was on a body, or slipped off it.
+/// `sigma_mps` is that of the estimated speed.
+bool restsDespiteEstimate(const ObjectEstimate& object, double sigma_mps);
+
 /// Tells whether the image around an object's followed points moved with the body since an earlier frame, or rested.
 /// Each point asks the surface around it, densely. That the point itself was followed does not count: a wrong match on
 /// what repeats was followed, too. Where a point may lie on an object that was known before, what goes along with that

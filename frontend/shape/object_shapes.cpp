@@ -148,11 +148,13 @@ void ObjectShapes::lookAt(ObjectEstimate& object, const Inputs& inputs, const Fr
   if (!predicted) {
     shape.state = object.state;
     const auto* observed = observationOf(object.track, *inputs.measurements);
-    shape.existence.addSpeed(object.velocity_world_mps.norm(),
-                             speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_));
+    const double sigma_mps = speedSigma_mps(object, frame.T_world_cam, camera_, camera_speed_mps_);
+    shape.existence.addSpeed(object.velocity_world_mps.norm(), sigma_mps);
     if (observed) shape.existence.addFollowed(observed->measured.size() + (view.small ? observed->patches.size() : 0));
-    shape.existence.addVerdict(frame.head.frame,
-                               motionVerdict(observed, seen ? &seen->disparities : nullptr, view, camera_));
+    const auto* disparities = seen ? &seen->disparities : nullptr;
+    const bool rests = restsDespiteEstimate(object, sigma_mps);
+    const auto verdict = rests ? MotionVerdict::kRested : motionVerdict(observed, disparities, view, camera_);
+    shape.existence.addVerdict(frame.head.frame, verdict);
   }
   if (seen) {
     if (predicted && movesWithBody(seen->outline, seen->disparities, view, camera_))

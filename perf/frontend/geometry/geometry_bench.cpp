@@ -78,7 +78,7 @@ void BM_GroundPlane(benchmark::State& state) {
   std::vector<GroundCandidate> points;
   for (std::int64_t i = 0; i < state.range(0); ++i) {
     const double height_m = i % 3 == 0 ? noise.uniform(0, 2) : 0.03 * noise.uniform(-1, 1);
-    points.push_back({{noise.uniform(-8, 8), 1.65 - height_m, noise.uniform(4, 30)}, 0.05});
+    points.push_back({{noise.uniform(-8, 8), 1.65 - height_m, noise.uniform(4, 30)}, 0.03});
   }
   GroundPlaneEstimator estimate(GroundPlaneEstimator::Params{});
   std::uint64_t number = 0;

@@ -217,5 +217,19 @@ TEST(MotionVerdict, TellsAMirrorImageByTheNearerSurfaceAroundIt) {
   EXPECT_EQ(mirrored.verdict(moved), MotionVerdict::kMoved) << "a pole before a body leaves what is behind to be seen";
 }
 
+TEST(MotionVerdict, RestContradictsAnEstimateThatSurelyGoesOn) {
+  ObjectEstimate object;
+  object.state = ObjectState::kStopped;
+  const auto contradicts = [&](double speed_mps, double sigma_mps) {
+    object.velocity_world_mps = {0, 0, speed_mps};
+    return restsDespiteEstimate(object, sigma_mps);
+  };
+  EXPECT_TRUE(contradicts(2, 0.5));
+  EXPECT_FALSE(contradicts(2, 1.5)) << "hardly sure";
+  EXPECT_FALSE(contradicts(0.8, 0.1)) << "about to stand or to start";
+  object.state = ObjectState::kMoving;
+  EXPECT_FALSE(contradicts(2, 0.5));
+}
+
 }  // namespace
 }  // namespace motorcade

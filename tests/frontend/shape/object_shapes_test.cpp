@@ -304,16 +304,19 @@ TEST(ObjectShapes, WhatHasLeftTheImageWhollyIsDroppedEvenIfItSeemsToBeSeen) {
   EXPECT_TRUE(crossing.finish()[13].objects.empty());
 }
 
-/// A car that crosses is estimated where the street is empty: what is seen densely contradicts it.
+/// A car that crosses is estimated where the street is empty: what is seen densely contradicts it, and so does a
+/// tracker that finds it at rest.
 TEST(ObjectShapes, BelieveInWhatMovesInTheImages) {
-  Crossing crossing(-6), imagined(-6);
-  double there = 0, not_there = 1;
+  Crossing crossing(-6), imagined(-6), standing(-6);
+  double there = 0, not_there = 1, stands = 1;
   for (int frame = 0; frame < 8; ++frame) {
     there = crossing.look(ObjectState::kMoving).objects[0].existence_probability;
     not_there = imagined.look(ObjectState::kMoving, Scene({})).objects[0].existence_probability;
+    stands = standing.look(ObjectState::kStopped, Scene({})).objects[0].existence_probability;
   }
   EXPECT_GT(there, 0.95);
   EXPECT_LT(not_there, 0.7);
+  EXPECT_LT(stands, not_there - 0.1);
   for (const FrameEstimate& final : crossing.finish()) EXPECT_GT(final.objects[0].existence_probability, 0.95);
 }
 

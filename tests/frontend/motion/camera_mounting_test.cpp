@@ -1,0 +1,51 @@
+#include "frontend/motion/camera_mounting.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+#include "tests/support/noise.hpp"
+
+namespace motorcade {
+namespace {
+
+GroundPlane near(const GroundPlane& plane, test::Noise& noise) {
+  const Eigen::Vector3d tilt = noise.inBox({-0.01, 0, -0.01}, {0.01, 0, 0.01});
+  return {(plane.normal_cam + tilt).normalized(), plane.height_m + noise.uniform(-0.05, 0.05)};
+}
+
+TEST(CameraMounting, IsTheMedianOfPlanesOfWhichTwoInFiveAreWrong) {
+  const GroundPlane road{Eigen::Vector3d(0.02, 1, 0.1).normalized(), 1.4};
+  test::Noise noise(1);
+  CameraMounting mounting;
+  for (int i = 0; i < 200; ++i) {
+    const bool wrong = i % 5 < 2;
+    mounting.add(wrong ? GroundPlane{Eigen::Vector3d(-0.2, 1, 0).normalized(), noise.uniform(0.4, 1)}
+                       : near(road, noise));
+  }
+  ASSERT_TRUE(mounting.isKnown());
+  EXPECT_NEAR(mounting.plane().height_m, road.height_m, 0.05);
+  EXPECT_THAT(mounting.plane().normal_cam, test::IsNear(road.normal_cam, 0.012));
+}
+
+TEST(CameraMounting, SaysNothingBeforeItIsKnownAndThenFavorsPlanesNearIt) {
+  const GroundPlane road{{0, 1, 0}, 1.6}, low{{0, 1, 0}, 1.2}, tilted{Eigen::Vector3d(0, 1, 0.1).normalized(), 1.6};
+  CameraMounting mounting;
+  EXPECT_EQ(mounting.likelihoodOf(low), 1);
+  for (int i = 0; i < 5; ++i) mounting.add(road);
+  EXPECT_EQ(mounting.likelihoodOf(road), 1);
+  for (const GroundPlane& other : {low, tilted}) {
+    EXPECT_LT(mounting.likelihoodOf(other), 0.1);
+    EXPECT_GT(mounting.likelihoodOf(other), 0.01) << "heavy tails: a ramp is possible";
+  }
+}
+
+/// Another rig, or a load: the old planes leave.
+TEST(CameraMounting, FollowsAChangeThatStays) {
+  CameraMounting mounting;
+  for (int i = 0; i < 1000; ++i) mounting.add({{0, 1, 0}, 1.6});
+  for (int i = 0; i < 200; ++i) mounting.add({{0, 1, 0}, 1.2});
+  EXPECT_NEAR(mounting.plane().height_m, 1.2, 1e-9);
+}
+
+}  // namespace
+}  // namespace motorcade
