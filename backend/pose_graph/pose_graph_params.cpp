@@ -6,14 +6,15 @@ std::vector<Parameter> parametersOf(PoseGraphParams& params) {
   using Policy = RelinearizationPolicy;
   return {
       choiceParameter<Policy>("relinearization", params.policy, {{"every", Policy::kEveryN}, {"fluid", Policy::kFluid}},
-                              "fluid relinearizes what is off; every N updates is the paper's way"),
+                              "pose_graph alone: fluid relinearizes what is off; every N updates is the paper's way"),
       numberParameter("relinearize_every_updates", params.relinearize_every_updates, {1, 10000},
-                      "of \"every\": fewer updates are more exact, more are faster"),
-      switchParameter("factors.use_motion", params.use_motion, "motion of an object between successive frames"),
+                      "pose_graph alone, of \"every\": fewer updates are more exact, more are faster"),
+      switchParameter("factors.use_motion", params.use_motion,
+                      "pose_graph alone: motion of an object between successive frames"),
       switchParameter("factors.use_camera_encounter", params.use_camera_encounter,
-                      "poses of objects seen from the camera"),
+                      "pose_graph alone: poses of objects seen from the camera"),
       switchParameter("factors.use_object_encounter", params.use_object_encounter,
-                      "poses of objects relative to each other")};
+                      "pose_graph alone: poses of objects relative to each other")};
 }
 
 }  // namespace motorcade

@@ -242,7 +242,8 @@ std::vector<Parameter> parametersOf(SceneFlowEstimator::Params& params) {
                           "more frames tell slow movers better, fewer follow maneuvers"),
           numberParameter("min_observations", params.min_observations, {2, 5},
                           "fewer see movers earlier, more see them surely"),
-          numberParameter("max_speed_mps", params.max_speed_mps, {10, 200}, "the fastest traffic to expect")};
+          numberParameter("max_speed_mps", params.max_speed_mps, {10, 200},
+                          "standard deviation of a point's speed before it is measured")};
 }
 
 }  // namespace motorcade
