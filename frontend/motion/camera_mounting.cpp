@@ -5,8 +5,11 @@
 namespace motorcade {
 namespace {
 
-constexpr double kTilt = 0.03;     // a car pitches and rolls by a degree, and a road bends as much within 30 m
-constexpr double kHeight_m = 0.1;  // a car heaves by some centimeters; a bend in the road looks like a decimeter
+// Differences from the mounting that are usual: roads are crowned, banked and bent by 0.025 and more, and a car leans
+// by as much in a bend; it heaves by some centimeters, and a bend ahead looks like a decimeter.
+constexpr double kTilt = 0.06, kHeight_m = 0.15;
+// The same of the mounting that is assumed: that of most cars.
+constexpr double kAssumedTilt = 0.12, kAssumedHeight_m = 0.5;
 
 }  // namespace
 
@@ -20,16 +23,16 @@ void CameraMounting::add(const GroundPlane& found) {
     return values[count / 2];
   };
   for (int axis = 0; axis < 3; ++axis)
-    plane_.normal_cam[axis] = median([axis](const GroundPlane& p) { return p.normal_cam[axis]; });
-  plane_.normal_cam.normalize();
-  plane_.height_m = median([](const GroundPlane& p) { return p.height_m; });
+    median_.normal_cam[axis] = median([axis](const GroundPlane& p) { return p.normal_cam[axis]; });
+  median_.normal_cam.normalize();
+  median_.height_m = median([](const GroundPlane& p) { return p.height_m; });
 }
 
 double CameraMounting::likelihoodOf(const GroundPlane& plane) const {
-  if (!isKnown()) return 1;
-  const double tilt = (plane.normal_cam - plane_.normal_cam).norm() / kTilt,
-               height = (plane.height_m - plane_.height_m) / kHeight_m;
-  return 1 / (1 + tilt * tilt + height * height);
+  const double usual_tilt = isKnown() ? kTilt : kAssumedTilt, usual_m = isKnown() ? kHeight_m : kAssumedHeight_m;
+  const double tilt = (plane.normal_cam - this->plane().normal_cam).norm() / usual_tilt,
+               height = (plane.height_m - this->plane().height_m) / usual_m;
+  return 1 / std::max(1.0, tilt * tilt + height * height);
 }
 
 }  // namespace motorcade

@@ -7,21 +7,25 @@
 
 namespace motorcade {
 
-/// How the camera stands over the road: the component-wise median of the planes that were found lately, each by itself.
-/// A rig's height and tilt stay the same, so that a plane far from them is a car's roof, an embankment or a reflection.
+/// How the camera stands over the road: the component-wise median of the planes of the last frames, each found by
+/// itself. A rig's height and tilt stay the same, so a plane far from them is a car's roof, an embankment or a mirror
+/// image.
 class CameraMounting {
  public:
+  /// `assumed`: until it is known.
+  explicit CameraMounting(const GroundPlane& assumed) : assumed_(assumed) {}
+
   /// Takes a plane that was found without regard to those before it.
   void add(const GroundPlane& found);
 
   /// True once enough planes were found.
   bool isKnown() const { return count_ >= kLeast; }
 
-  /// Plane of the road under the camera. Requires `isKnown`.
-  const GroundPlane& plane() const { return plane_; }
+  /// Plane of the road under the camera.
+  const GroundPlane& plane() const { return isKnown() ? median_ : assumed_; }
 
-  /// Likelihood of a plane, 1 of the mounting's own, with heavy tails: a ramp that is surely seen is believed. It is 1
-  /// of all planes while the mounting is not known.
+  /// Likelihood of a plane, which is 1 at the mounting. Its tails are heavy: a ramp that is surely seen is believed.
+  /// All planes have 1 while the mounting is not known.
   double likelihoodOf(const GroundPlane& plane) const;
 
  private:
@@ -29,7 +33,7 @@ class CameraMounting {
 
   std::array<GroundPlane, kRemembered> found_;  // a ring
   std::size_t count_ = 0;                       // of all planes so far
-  GroundPlane plane_;
+  GroundPlane assumed_, median_;
 };
 
 }  // namespace motorcade

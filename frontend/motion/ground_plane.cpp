@@ -54,9 +54,8 @@ std::optional<GroundPlane> refine(const std::vector<LowPoint>& points, const Gro
 
 }  // namespace
 
-GroundPlaneEstimator::GroundPlaneEstimator(const Params& params) : params_(requireValid(params)) {
-  plane_.height_m = params.initial_height_m;
-}
+GroundPlaneEstimator::GroundPlaneEstimator(const Params& params)
+    : params_(requireValid(params)), plane_{.height_m = params.initial_height_m}, mounting_(plane_) {}
 
 bool GroundPlaneEstimator::plausible(const GroundPlane& plane) const {
   return plane.height_m > params_.min_height_m && plane.height_m < params_.max_height_m &&
@@ -68,52 +67,63 @@ double GroundPlaneEstimator::heightSigma_m(const GroundCandidate& point) const {
 }
 
 GroundPlane GroundPlaneEstimator::operator()(std::span<const GroundCandidate> points, std::uint64_t seed) {
-  const std::vector<LowPoint> low = lowPoints(points);
-  if (static_cast<int>(low.size()) < kMinInliers) return plane_;
-  const std::vector<GroundPlane> planes = hypotheses(low, seed);
-  const std::vector<double> supports = planeSupports(planes, low);
-  const auto fitted = [&](auto scoreOf) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < planes.size(); ++i)
-      if (scoreOf(i) > scoreOf(best)) best = i;
-    auto plane = refine(low, planes[best]);
-    if (plane && !plausible(*plane)) plane.reset();
-    return plane;
-  };
-  if (const auto alone = fitted([&](std::size_t i) { return supports[i]; })) mounting_.add(*alone);
-  const auto plane = fitted([&](std::size_t i) { return supports[i] * mounting_.likelihoodOf(planes[i]); });
+  const Hypotheses near_mounting = hypothesesBelow(mounting_.plane(), points, seed);
+  if (const auto alone =
+          mounting_.isKnown() ? fitted(near_mounting, near_mounting.supports) : fittedAnywhere(points, seed))
+    mounting_.add(*alone);
+  std::vector<double> scores = near_mounting.supports;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    scores[i] = std::max(0.0, scores[i]) * mounting_.likelihoodOf(near_mounting.planes[i]);
+  const auto plane = fitted(near_mounting, scores);
   if (!plane) return plane_;
   plane_.normal_cam = (kMemory * plane_.normal_cam + (1 - kMemory) * plane->normal_cam).normalized();
   plane_.height_m = kMemory * plane_.height_m + (1 - kMemory) * plane->height_m;
   return plane_;
 }
 
-std::vector<LowPoint> GroundPlaneEstimator::lowPoints(std::span<const GroundCandidate> points) const {
-  // Until the mounting is known, the road may rise in the image as steeply as the camera may look down.
-  GroundPlane highest{{0, cosine(params_.max_tilt_rad), sine(params_.max_tilt_rad)}, params_.min_height_m};
-  if (mounting_.isKnown()) highest = mounting_.plane();
-  highest.height_m *= kMinHeightShare;
-  std::vector<LowPoint> low;
-  for (const auto& c : points) {
-    const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
-    if (near && highest.heightOf_m(c.p_cam) < 0) low.push_back({c.p_cam, hypotenuse(kRoughness_m, heightSigma_m(c))});
-  }
-  return low;
+/// The plane with most support, of all that the camera may look at: it may look down steeply.
+std::optional<GroundPlane> GroundPlaneEstimator::fittedAnywhere(std::span<const GroundCandidate> points,
+                                                                std::uint64_t seed) const {
+  const GroundPlane steepest{{0, cosine(params_.max_tilt_rad), sine(params_.max_tilt_rad)}, params_.min_height_m};
+  const Hypotheses anywhere = hypothesesBelow(steepest, points, seed);
+  return fitted(anywhere, anywhere.supports);
 }
 
-/// Random planes, the last one and the mounting's.
-std::vector<GroundPlane> GroundPlaneEstimator::hypotheses(const std::vector<LowPoint>& points,
-                                                          std::uint64_t seed) const {
-  std::vector<GroundPlane> planes{plane_};
-  if (mounting_.isKnown()) planes.push_back(mounting_.plane());
+/// The plane with the best score, fitted to its points; empty if that is no road.
+std::optional<GroundPlane> GroundPlaneEstimator::fitted(const Hypotheses& hypotheses,
+                                                        const std::vector<double>& scores) const {
+  if (scores.empty()) return std::nullopt;
+  const auto best = std::ranges::max_element(scores) - scores.begin();
+  auto plane = refine(hypotheses.low, hypotheses.planes[static_cast<std::size_t>(best)]);
+  if (plane && !plausible(*plane)) plane.reset();
+  return plane;
+}
+
+/// Random planes, the last one and the mounting's, among the points whose height above `road` is less than half of the
+/// camera's. None if these points are too few.
+GroundPlaneEstimator::Hypotheses GroundPlaneEstimator::hypothesesBelow(GroundPlane road,
+                                                                       std::span<const GroundCandidate> points,
+                                                                       std::uint64_t seed) const {
+  road.height_m *= kMinHeightShare;
+  Hypotheses found;
+  for (const auto& c : points) {
+    const bool near = c.p_cam.z() < kMaxDepth_m && std::abs(c.p_cam.x()) < kMaxSide_m;
+    if (near && road.heightOf_m(c.p_cam) < 0)
+      found.low.push_back({c.p_cam, hypotenuse(kRoughness_m, heightSigma_m(c))});
+  }
+  if (static_cast<int>(found.low.size()) < kMinInliers) return found;
+  found.planes = {plane_, mounting_.plane()};
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
+  std::uniform_int_distribution<std::size_t> pick(0, found.low.size() - 1);
+  const auto any = [&] { return found.low[pick(random)].p_cam; };
   const int count = mounting_.isKnown() ? kHypotheses : kFirstHypotheses;
   for (int k = 0; k < count; ++k) {
-    const auto plane = planeThrough(points[pick(random)].p_cam, points[pick(random)].p_cam, points[pick(random)].p_cam);
-    if (plane && plausible(*plane)) planes.push_back(*plane);
+    const Eigen::Vector3d first = any(), second = any(), third = any();
+    const auto plane = planeThrough(first, second, third);
+    if (plane && plausible(*plane)) found.planes.push_back(*plane);
   }
-  return planes;
+  found.supports = planeSupports(found.planes, found.low);
+  return found;
 }
 
 bool GroundPlaneEstimator::isOnGround(const GroundCandidate& point) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,11 @@ std::vector<double> planeSupports(std::span<const GroundPlane> planes, std::span
 /// A triangulated point, as far as the road is concerned.
 struct GroundCandidate {
   Eigen::Vector3d p_cam;
-  double depth_ratio;  // standard deviation of its disparity by its disparity, which is that of its depth by its depth
+  double depth_ratio;  // relative standard deviation of its disparity, and so of its depth
 };
 
-/// Finds the road's plane by RANSAC over near, low points and a weighted fit, steadied by how the camera is mounted and
-/// by the previous frame's plane. Call in frame order: it remembers.
+/// Finds the road's plane by RANSAC over near, low points and a weighted fit. How the camera is mounted and the plane
+/// of the frame before steady it. Call in frame order.
 class GroundPlaneEstimator {
  public:
   struct Params {
@@ -48,8 +49,14 @@ class GroundPlaneEstimator {
   bool isOnGround(const GroundCandidate& point) const;
 
  private:
-  std::vector<LowPoint> lowPoints(std::span<const GroundCandidate> points) const;
-  std::vector<GroundPlane> hypotheses(const std::vector<LowPoint>& points, std::uint64_t seed) const;
+  struct Hypotheses {
+    std::vector<LowPoint> low;
+    std::vector<GroundPlane> planes;
+    std::vector<double> supports;
+  };
+  Hypotheses hypothesesBelow(GroundPlane road, std::span<const GroundCandidate> points, std::uint64_t seed) const;
+  std::optional<GroundPlane> fitted(const Hypotheses& hypotheses, const std::vector<double>& scores) const;
+  std::optional<GroundPlane> fittedAnywhere(std::span<const GroundCandidate> points, std::uint64_t seed) const;
   bool plausible(const GroundPlane& plane) const;
   double heightSigma_m(const GroundCandidate& point) const;
 
