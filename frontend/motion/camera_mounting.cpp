@@ -8,7 +8,7 @@ namespace {
 // Differences from the mounting that are usual: roads are crowned, banked and bent by 0.025 and more, and a car leans
 // by as much in a bend; it heaves by some centimeters, and a bend ahead looks like a decimeter.
 constexpr double kTilt = 0.06, kHeight_m = 0.15;
-// The same of the mounting that is assumed: that of most cars.
+// The same of the assumed mounting, which is that of most cars.
 constexpr double kAssumedTilt = 0.12, kAssumedHeight_m = 0.5;
 
 }  // namespace
@@ -17,8 +17,8 @@ void CameraMounting::add(const GroundPlane& found) {
   found_[count_++ % kRemembered] = found;
   const std::size_t count = std::min(count_, kRemembered);
   std::array<double, kRemembered> values;
-  const auto median = [&](auto valueOf) {
-    std::transform(found_.begin(), found_.begin() + count, values.begin(), valueOf);
+  const auto median = [&](auto value_of) {
+    std::transform(found_.begin(), found_.begin() + count, values.begin(), value_of);
     std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
     return values[count / 2];
   };

@@ -12,7 +12,7 @@ namespace motorcade {
 /// image.
 class CameraMounting {
  public:
-  /// `assumed`: until it is known.
+  /// `assumed` stands in for it until it is known.
   explicit CameraMounting(const GroundPlane& assumed) : assumed_(assumed) {}
 
   /// Takes a plane that was found without regard to those before it.
@@ -24,8 +24,8 @@ class CameraMounting {
   /// Plane of the road under the camera.
   const GroundPlane& plane() const { return isKnown() ? median_ : assumed_; }
 
-  /// Likelihood of a plane, which is 1 at the mounting. Its tails are heavy: a ramp that is surely seen is believed.
-  /// All planes have 1 while the mounting is not known.
+  /// Likelihood of a plane, which is 1 as near to the mounting as is usual. Its tails are heavy: a ramp that is surely
+  /// seen is believed.
   double likelihoodOf(const GroundPlane& plane) const;
 
  private:
