@@ -5,11 +5,11 @@
 namespace motorcade {
 namespace {
 
-// Differences from the mounting that are usual: roads are crowned, banked and bent by 0.025 and more, and a car leans
-// by as much in a bend; it heaves by some centimeters, and a bend ahead looks like a decimeter.
-constexpr double kTilt = 0.06, kHeight_m = 0.15;
+// Usual differences from the mounting. Roads are crowned and banked by 0.025 and more, and a car leans by as much in a
+// bend. It heaves by some centimeters, and a change of slope ahead looks like a decimeter.
+constexpr double kTilt_rad = 0.06, kHeight_m = 0.15;
 // The same of the assumed mounting, which is that of most cars.
-constexpr double kAssumedTilt = 0.12, kAssumedHeight_m = 0.5;
+constexpr double kAssumedTilt_rad = 0.12, kAssumedHeight_m = 0.5;
 
 }  // namespace
 
@@ -29,8 +29,8 @@ void CameraMounting::add(const GroundPlane& found) {
 }
 
 double CameraMounting::likelihoodOf(const GroundPlane& plane) const {
-  const double usual_tilt = isKnown() ? kTilt : kAssumedTilt, usual_m = isKnown() ? kHeight_m : kAssumedHeight_m;
-  const double tilt = (plane.normal_cam - this->plane().normal_cam).norm() / usual_tilt,
+  const double usual_rad = isKnown() ? kTilt_rad : kAssumedTilt_rad, usual_m = isKnown() ? kHeight_m : kAssumedHeight_m;
+  const double tilt = (plane.normal_cam - this->plane().normal_cam).norm() / usual_rad,
                height = (plane.height_m - this->plane().height_m) / usual_m;
   return 1 / std::max(1.0, tilt * tilt + height * height);
 }

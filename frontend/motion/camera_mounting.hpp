@@ -7,12 +7,12 @@
 
 namespace motorcade {
 
-/// How the camera stands over the road: the component-wise median of the planes of the last frames, each found by
-/// itself. A rig's height and tilt stay the same, so a plane far from them is a car's roof, an embankment or a mirror
+/// Mounting of the camera over the road: the component-wise median of the planes of the last frames, each found by
+/// itself. A rig's height and tilt stay the same. So a plane far from them is a car's roof, an embankment or a mirror
 /// image.
 class CameraMounting {
  public:
-  /// `assumed` stands in for it until it is known.
+  /// The mounting is `assumed` until enough planes were found.
   explicit CameraMounting(const GroundPlane& assumed) : assumed_(assumed) {}
 
   /// Takes a plane that was found without regard to those before it.
