@@ -1,6 +1,7 @@
 #include "frontend/shape/motion_evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/instruction_set.hpp"
@@ -23,6 +24,12 @@ struct Places {
   Floats u, v, depth_m;
 };
 
+/// Places from which cells at rest may come: up to (du, dv) to both sides of the middle, along the epipolar line.
+struct Stretch {
+  Places middle;
+  Floats least_depth_m, du, dv;
+};
+
 bool has3x3(const Image& image, int u, int v) {
   return u >= 1 && v >= 1 && u + 1 < image.width() && v + 1 < image.height();
 }
@@ -38,6 +45,13 @@ SixteenBytes pixels3x3(const Image& image, int u, int v) {
   return SixteenBytes(Rows{row(v - 1), row(v), row(v + 1), 0});
 }
 
+/// Rays of cells, and their disparities at full size.
+struct Rays {
+  Floats x, y, disparities_px;
+
+  std::array<Floats, 3> at(const Floats& z_m) const { return {x * z_m, y * z_m, z_m}; }
+};
+
 Places placesBefore(const Geometry& g, const MotionEvidence::Motion& motion, const std::array<Floats, 3>& p_cam) {
   std::array<Floats, 3> p;
   for (int i = 0; i < 3; ++i)
@@ -45,27 +59,60 @@ Places placesBefore(const Geometry& g, const MotionEvidence::Motion& motion, con
   return {g.focal.x() * (p[0] / p[2]) + g.middle.x(), g.focal.y() * (p[1] / p[2]) + g.middle.y(), p[2]};
 }
 
-/// Zero where one of the places is outside its image.
-int difference(const Geometry& g, int cell, const Places& moved, const Places& rested, int lane) {
+/// Places of rest for the disparities of cells, and for those that are less and more by the slack.
+Stretch stretchOfRest(const Geometry& g, const Rays& rays) {
+  const Places middle = placesBefore(g, g.rested, rays.at(g.fb / rays.disparities_px));
+  if (g.slack.disparity_px == 0) return {middle, middle.depth_m, {0}, {0}};
+  const Places end = placesBefore(g, g.rested, rays.at(g.fb / (rays.disparities_px + g.slack.disparity_px)));
+  return {middle, lesser(middle.depth_m, end.depth_m), end.u - middle.u, end.v - middle.v};
+}
+
+/// Least distance between where a cell has moved from and where it may have rested.
+float distanceBetween(const Places& moved, const Stretch& rested, int lane) {
+  const float u = moved.u[lane] - rested.middle.u[lane], v = moved.v[lane] - rested.middle.v[lane];
+  const float du = rested.du[lane], dv = rested.dv[lane], squared = du * du + dv * dv;
+  const float along = squared > 0 ? std::clamp((u * du + v * dv) / squared, -1.F, 1.F) : 0;
+  const float aside_u = u - along * du, aside_v = v - along * dv;
+  return std::sqrt(aside_u * aside_u + aside_v * aside_v);
+}
+
+constexpr int kOutside = std::numeric_limits<int>::max();
+
+/// Least difference from the image before within the slack's cells around a place; kOutside where these are not in it.
+int leastAround(const Geometry& g, const SixteenBytes& now, float u_px, float v_px) {
   // Negative places are outside in any case. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-  const auto nearest = [](float px) HWY_ATTR { return static_cast<int>(px + 0.5F); };
+  const int u = static_cast<int>(u_px + 0.5F), v = static_cast<int>(v_px + 0.5F), slack = g.slack.cells;
+  if (!has3x3(g.before, u - slack, v - slack) || !has3x3(g.before, u + slack, v + slack)) return kOutside;
+  int least = kOutside;
+  for (int j = -slack; j <= slack; ++j)
+    for (int i = -slack; i <= slack; ++i) least = std::min(least, differenceOf(now, pixels3x3(g.before, u + i, v + j)));
+  return least;
+}
+
+/// The same along a stretch; kOutside where a part of it is not in the image.
+int leastAlong(const Geometry& g, const SixteenBytes& now, const Stretch& rested, int lane) {
+  const float du = rested.du[lane], dv = rested.dv[lane], step_px = static_cast<float>(2 * g.slack.cells + 1);
+  const int steps = static_cast<int>(std::ceil(std::sqrt(du * du + dv * dv) / step_px));
+  int least = kOutside;
+  for (int step = -steps; step <= steps; ++step) {
+    const float share = steps > 0 ? static_cast<float>(step) / static_cast<float>(steps) : 0;
+    const int around = leastAround(g, now, rested.middle.u[lane] + share * du, rested.middle.v[lane] + share * dv);
+    if (around == kOutside) return kOutside;
+    least = std::min(least, around);
+  }
+  return least;
+}
+
+/// Zero where one of the places is outside its image.
+int difference(const Geometry& g, int cell, const Places& moved, const Stretch& rested, int lane) {
   const PixelWindow& window = g.map.window;
-  const int u = window.u0 + cell % window.width, v = window.v0 + cell / window.width, slack = g.slack;
-  const int u_moved = nearest(moved.u[lane]), v_moved = nearest(moved.v[lane]);
-  const int u_rested = nearest(rested.u[lane]), v_rested = nearest(rested.v[lane]);
-  if (!has3x3(g.now, u, v) || !has3x3(g.before, u_moved - slack, v_moved - slack) ||
-      !has3x3(g.before, u_moved + slack, v_moved + slack) || !has3x3(g.before, u_rested - slack, v_rested - slack) ||
-      !has3x3(g.before, u_rested + slack, v_rested + slack))
-    return 0;
+  const int u = window.u0 + cell % window.width, v = window.v0 + cell / window.width;
+  if (!has3x3(g.now, u, v)) return 0;
   const SixteenBytes now = pixels3x3(g.now, u, v);
-  const auto least_around = [&](int u_before, int v_before) HWY_ATTR {
-    int least = std::numeric_limits<int>::max();
-    for (int j = -slack; j <= slack; ++j)
-      for (int i = -slack; i <= slack; ++i)
-        least = std::min(least, differenceOf(now, pixels3x3(g.before, u_before + i, v_before + j)));
-    return least;
-  };
-  return least_around(u_moved, v_moved) - least_around(u_rested, v_rested);
+  const int of_moved = leastAround(g, now, moved.u[lane], moved.v[lane]);
+  if (of_moved == kOutside) return 0;
+  const int of_rested = leastAlong(g, now, rested, lane);
+  return of_rested == kOutside ? 0 : of_moved - of_rested;
 }
 
 /// Up to kFloatLanes cells.
@@ -78,18 +125,18 @@ void compare(const Geometry& g, std::span<const int> cells, std::int16_t* eviden
     rows[i] = static_cast<float>(g.map.window.v0 + row);
     disparities_px[i] = g.map.disparity_px[cells[i]];
   }
-  const Floats z = g.fb / (load(disparities_px.data()) * g.scale + g.offset_px);
-  const std::array<Floats, 3> p_cam{(load(columns.data()) - g.middle.x()) * (1 / g.focal.x()) * z,
-                                    (load(rows.data()) - g.middle.y()) * (1 / g.focal.y()) * z, z};
-  const Places moved = placesBefore(g, g.moved, p_cam), rested = placesBefore(g, g.rested, p_cam);
+  const Rays rays{(load(columns.data()) - g.middle.x()) * (1 / g.focal.x()),
+                  (load(rows.data()) - g.middle.y()) * (1 / g.focal.y()),
+                  load(disparities_px.data()) * g.scale + g.offset_px};
+  const Places moved = placesBefore(g, g.moved, rays.at(g.fb / rays.disparities_px));
+  const Stretch rested = stretchOfRest(g, rays);
   constexpr auto kNear_m = static_cast<float>(StereoCamera::kMinDepth_m);
-  const float least_shift = kLeastShift + static_cast<float>(2 * g.slack);
-  const Floats du = moved.u - rested.u, dv = moved.v - rested.v;
-  const unsigned tells = bitsOf((moved.depth_m >= kNear_m) & (rested.depth_m >= kNear_m) &
-                                (du * du + dv * dv >= least_shift * least_shift));
+  const float least_shift = kLeastShift + static_cast<float>(2 * g.slack.cells);
+  const unsigned visible = bitsOf((moved.depth_m >= kNear_m) & (rested.least_depth_m >= kNear_m));
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const int lane = static_cast<int>(i);
-    evidence[i] = static_cast<std::int16_t>((tells >> i & 1) != 0 ? difference(g, cells[i], moved, rested, lane) : 0);
+    const bool tells = (visible >> i & 1) != 0 && distanceBetween(moved, rested, lane) >= least_shift;
+    evidence[i] = static_cast<std::int16_t>(tells ? difference(g, cells[i], moved, rested, lane) : 0);
   }
 }
 
@@ -159,7 +206,7 @@ MotionEvidence::Motion motionOf(const SE3& T_before_cam) {
 }  // namespace
 
 MotionEvidence::MotionEvidence(const LevelDisparities& disparities, const ObjectView& view,
-                               const ObjectView::Before& before, const StereoCamera& camera, int slack)
+                               const ObjectView::Before& before, const StereoCamera& camera, const Slack& slack)
     : geometry_{.map = disparities.map,
                 .now = before.now->levels[disparities.level],
                 .before = before.before->levels[disparities.level],

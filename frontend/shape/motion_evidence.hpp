@@ -17,10 +17,15 @@ class MotionEvidence {
  public:
   static constexpr int kPixels = 9;  // around a cell that are compared
 
-  /// Compares with the frame of `before`. All four outlive the evidence. The best place up to `slack` cells around the
-  /// predicted one is compared, of motion as of rest.
+  /// How far places may be from where they are predicted.
+  struct Slack {
+    int cells = 0;           // around the place, of motion as of rest
+    float disparity_px = 0;  // by which the cell's own may be wrong: moves the place of rest along its epipolar line
+  };
+
+  /// Compares with the frame of `before`. All four outlive the evidence. The best place within the slack is compared.
   MotionEvidence(const LevelDisparities& disparities, const ObjectView& view, const ObjectView::Before& before,
-                 const StereoCamera& camera, int slack = 0);
+                 const StereoCamera& camera, const Slack& slack = {0, 0});
 
   /// Advantage of rest over motion with the body for each cell [gray levels, added over kPixels]; zero where the two
   /// can hardly be told apart. The cells are places in the map, and their disparities are known.
@@ -34,7 +39,7 @@ class MotionEvidence {
   struct Geometry {
     const DisparityMap& map;
     const Image &now, &before;
-    int slack;
+    Slack slack;
     float scale, offset_px, fb;
     Eigen::Vector2f focal, middle;  // of the level
     Motion moved, rested;

@@ -47,9 +47,13 @@ constexpr double kDepth_m = 0.5, kSlack_px = 1;  // by which its surface may lea
 constexpr int kLeastTold_gray = 2;               // per pixel: three standard deviations of the images' noise
 constexpr double kNearlyAll = 0.75;              // of the points
 constexpr int kEnough = 3;                       // points that moved, so that they are no chance
+constexpr double kMost = 0.5;                    // of the points: single ones at its border rest beside a body
 constexpr double kTold = 0.5;                    // of a person's patches: those beside it tell nothing
-constexpr int kSlack = 1;                        // cells by which an estimate may misplace the surface
-constexpr int kLeastAhead = 3;                   // samples by which one side wins
+constexpr MotionEvidence::Slack kSlack{
+    .cells = 1,           // by which an estimate may misplace the surface
+    .disparity_px = 0.5F  // two standard deviations of a disparity
+};
+constexpr int kLeastAhead = 3;  // samples by which one side wins
 
 /// The cells of the map that show the surface around a point.
 std::vector<int> cellsAround(const PointMeasurement& point, const LevelDisparities& disparities, double z_m,
@@ -103,12 +107,18 @@ bool lieWithinAnother(const std::vector<PlacedPoint>& points, const OtherBodies&
                            [&](const Eigen::Vector3d& p_cam) { return others.around(p_cam, kMargin_m) != nullptr; });
 }
 
-/// True when what rests around the object's points in the image is nearer than these. A body hides what is behind it; a
-/// mirror image lies behind the surface that mirrors it.
+/// Points at rest to one side of others in the image, and how many of them are nearer.
+struct RestBeside {
+  int all = 0, nearer = 0;
+};
+
+/// True when what rests to both sides of the object's points in the image is nearer than these. A body hides what is
+/// behind it; a mirror image lies behind the surface that mirrors it. A body that goes behind something has this to one
+/// side.
 bool liesBehindRest(const std::vector<PlacedPoint>& points, const ObjectView& view, const StereoCamera& camera) {
-  constexpr double kLeastDepth_m = 1;  // a body's own depth does not count
-  constexpr double kSigmas = 3;        // standard deviations of a disparity
-  constexpr int kLeast = 5;            // points at rest
+  constexpr double kLeastDepth_m = 1;     // a body's own depth does not count
+  constexpr double kSigmas = 3;           // standard deviations of a disparity
+  constexpr int kLeast = 5, kBeside = 2;  // points at rest in all, and to each side
   if (points.empty()) return false;
   Eigen::AlignedBox2d around_px;
   std::vector<double> depths_m;
@@ -122,24 +132,28 @@ bool liesBehindRest(const std::vector<PlacedPoint>& points, const ObjectView& vi
   const Eigen::Vector2d reach_px = Eigen::Vector2d::Constant(camera.fx_px * kReach_m / *middle);
   around_px = {around_px.min() - reach_px, around_px.max() + reach_px};
   const double before_px = camera.fx_px * camera.baseline_m / (*middle - kLeastDepth_m);
-  int nearer = 0, all = 0;
+  RestBeside left, right;
   for (const ScenePoint& p : view.scene) {
     if (p.label != PointLabel::kStatic || !p.flow || !around_px.contains(p.uvd_px.head<2>())) continue;
-    ++all, nearer += p.uvd_px.z() > before_px + kSigmas * p.sigma_px.z();
+    RestBeside& side = p.uvd_px.x() < around_px.center().x() ? left : right;
+    ++side.all, side.nearer += p.uvd_px.z() > before_px + kSigmas * p.sigma_px.z();
   }
-  return nearer >= kLeast && nearer >= kNearlyAll * all;
+  const auto hides = [](const RestBeside& side) {
+    return side.nearer >= std::max<double>(kBeside, kNearlyAll * side.all);
+  };
+  return hides(left) && hides(right) && left.nearer + right.nearer >= kLeast;
 }
 
-/// Points around which the image moved with the body, and around which it rested.
+/// Points around which the image moved with the body, and around which it rested, of those that were asked.
 struct Votes {
-  int moved = 0, rested = 0;
+  int moved = 0, rested = 0, asked = 0;
 };
 
 Votes votesOf(const std::vector<PlacedPoint>& points, const LevelDisparities& disparities, const ObjectView& view,
               const OtherBodies& others, const StereoCamera& camera) {
   constexpr int kLeast = kLeastTold_gray * MotionEvidence::kPixels;
   constexpr double kMargin_m = 0.5;  // of another's cuboid, on which the point may lie
-  Votes votes;
+  Votes votes{.asked = static_cast<int>(points.size())};
   for (const PlacedPoint& point : points) {
     const ObjectView::Before* other = others.around(point.p_cam, kMargin_m);
     const MotionEvidence rests_rather(disparities, view, other ? *other : *view.well_before, camera, kSlack);
@@ -156,7 +170,8 @@ MotionVerdict verdictOf(const Votes& votes, bool well_apart) {
   const double all = votes.moved + votes.rested;
   if (all == 0) return well_apart ? MotionVerdict::kNothing : MotionVerdict::kUntold;
   if (votes.moved >= kNearlyAll * all) return votes.moved >= kEnough ? MotionVerdict::kMoved : MotionVerdict::kHardly;
-  return votes.rested >= kNearlyAll * all ? MotionVerdict::kRested : MotionVerdict::kMixed;
+  const bool rested = votes.rested >= kNearlyAll * all && votes.rested >= kMost * votes.asked;
+  return rested ? MotionVerdict::kRested : MotionVerdict::kMixed;
 }
 
 }  // namespace
@@ -183,7 +198,7 @@ MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDispar
   if (!disparities) return verdictOf({}, well_apart);
   const Votes votes = votesOf(points, *disparities, view, others, camera);
   if (votes.rested > 0 && view.well_before->apart < view.width) return MotionVerdict::kUntold;
-  const bool told = !few || kTold * std::ssize(points) <= votes.moved + votes.rested;
+  const bool told = !few || kTold * votes.asked <= votes.moved + votes.rested;
   return verdictOf(told ? votes : Votes{}, well_apart);
 }
 

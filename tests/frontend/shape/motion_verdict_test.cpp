@@ -41,21 +41,22 @@ class Surface {
   /// Verdict on an image whose content has come so far since the one before, by place.
   MotionVerdict verdict(const std::function<double(double, double)>& came_px) {
     before_ = pictureOf(came_px);
-    const SE3 T_before_body(Eigen::Matrix3d::Identity(), {-kAside_m, 0, kDepth_m});
-    view_.well_before = {&now_, &before_, T_before_body, SE3{}, FrameId{1}, apart};
+    const SE3 T_before_cam(Eigen::Matrix3d::Identity(), {camera_aside_m, 0, 0});
+    const SE3 T_before_body(Eigen::Matrix3d::Identity(), {camera_aside_m - aside_m, 0, kDepth_m});
+    view_.well_before = {&now_, &before_, T_before_body, T_before_cam, FrameId{1}, apart};
     return motionVerdict(points_seen ? &observed_ : nullptr, outline_found ? &seen_ : nullptr, view_, kRig);
   }
   /// Adds an object that was known before, around the surface or so far before it, which goes along with the body.
   void addOther(double nearer_m = 0) { view_.others.push_back(along(nearer_m, -kAside_m)); }
   /// Adds a lost object, which goes another way or along with the body.
   void addLost(bool goes_along) { view_.lost.push_back(along(0, goes_along ? -kAside_m : 0)); }
-  /// Adds so many points at rest between those of the surface, so much nearer than it.
-  void addRest(int points, double nearer_m) {
+  /// Adds so many points at rest between those of the surface, so much nearer than it, from a column on.
+  void addRest(int points, double nearer_m, double first_px = 590) {
     const SceneFlow none{
         .p_cam = Eigen::Vector3d::Zero(), .velocity_mps = Eigen::Vector3d::Zero(), .covariance = Matrix6d::Identity()};
     for (int i = 0; i < points; ++i)
       rest_.push_back({.point = {static_cast<std::int64_t>(rest_.size())},
-                       .uvd_px = {590.0 + 5 * i, 150.0, kRig.fx_px * kRig.baseline_m / (kDepth_m - nearer_m)},
+                       .uvd_px = {first_px + 5 * i, 150.0, kRig.fx_px * kRig.baseline_m / (kDepth_m - nearer_m)},
                        .sigma_px = Eigen::Vector3d::Constant(0.2),
                        .label = PointLabel::kStatic,
                        .flow = none});
@@ -79,6 +80,7 @@ class Surface {
 
   bool points_seen = true, outline_found = true;
   double apart = kShift_px;
+  double aside_m = kAside_m, camera_aside_m = 0;  // by which the body and the camera came
 
  private:
   ObjectView::Other along(double nearer_m, double came_m) const {
@@ -123,6 +125,16 @@ TEST(MotionVerdict, IsHardlyOneOfAPointOrTwo) {
   EXPECT_EQ(surface.verdict(rested), MotionVerdict::kRested);
 }
 
+/// Points at the border of a body may lie on what is behind it.
+TEST(MotionVerdict, IsRestedOnlyWhereHalfOfThePointsSayIt) {
+  Surface surface;
+  const auto rest_above = [](double row) {  // and stripes below, which tell nothing
+    return [row](double u, double v) { return v < row ? 0 : -u; };
+  };
+  EXPECT_EQ(surface.verdict(rest_above(75)), MotionVerdict::kMixed);
+  EXPECT_EQ(surface.verdict(rest_above(105)), MotionVerdict::kRested);
+}
+
 TEST(MotionVerdict, AsksThePatchesOfAPerson) {
   Surface surface;
   surface.followByPatches();
@@ -154,6 +166,19 @@ TEST(MotionVerdict, HoldsWhereEstimatesAreOffByACell) {
   Surface surface;
   EXPECT_EQ(surface.verdict([](double, double) { return kShift_px + 1; }), MotionVerdict::kMoved);
   EXPECT_EQ(surface.verdict([](double, double) { return -1.0; }), MotionVerdict::kRested);
+}
+
+/// An error of the disparity moves the place of what rests along its epipolar line.
+TEST(MotionVerdict, TakesNoMotionThatHalfAPixelOfDisparityExplains) {
+  constexpr double kCame_m = 6;  // half a pixel of 32 px is 0.09 m of it
+  const auto verdict_of = [](double aside_m) {
+    Surface surface;
+    surface.aside_m = aside_m, surface.camera_aside_m = kCame_m;
+    return surface.verdict([aside_m](double, double) { return kShift_px / kAside_m * (aside_m - kCame_m); });
+  };
+  EXPECT_EQ(verdict_of(0.17), MotionVerdict::kNothing);
+  EXPECT_EQ(verdict_of(-0.17), MotionVerdict::kNothing);
+  EXPECT_EQ(verdict_of(0.25), MotionVerdict::kMoved);
 }
 
 TEST(MotionVerdict, IsNothingWhereNoPointHasASurfaceThatTells) {
@@ -215,6 +240,15 @@ TEST(MotionVerdict, TellsAMirrorImageByTheNearerSurfaceAroundIt) {
   EXPECT_EQ(behind.verdict(moved), MotionVerdict::kMoved);
   mirrored.addRest(4, -3);
   EXPECT_EQ(mirrored.verdict(moved), MotionVerdict::kMoved) << "a pole before a body leaves what is behind to be seen";
+}
+
+TEST(MotionVerdict, ABodyGoesBehindWhatIsNearerToOneSide) {
+  constexpr double kRight_px = 640;
+  Surface left, right, both;
+  left.addRest(5, 3), right.addRest(5, 3, kRight_px), both.addRest(5, 3), both.addRest(5, 3, kRight_px);
+  EXPECT_EQ(left.verdict(moved), MotionVerdict::kMoved);
+  EXPECT_EQ(right.verdict(moved), MotionVerdict::kMoved);
+  EXPECT_EQ(both.verdict(moved), MotionVerdict::kBehind);
 }
 
 TEST(MotionVerdict, RestContradictsAnEstimateThatSurelyGoesOn) {
