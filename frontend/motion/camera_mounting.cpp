@@ -35,4 +35,12 @@ double CameraMounting::likelihoodOf(const GroundPlane& plane) const {
   return 1 / std::max(1.0, tilt * tilt + height * height);
 }
 
+Eigen::Matrix3d levelAxes(const Eigen::Vector3d& normal_cam) {
+  const Eigen::Vector3d optical_axis = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d ahead = (optical_axis - normal_cam * normal_cam.dot(optical_axis)).normalized();
+  Eigen::Matrix3d R_cam_level;
+  R_cam_level << normal_cam.cross(ahead), normal_cam, ahead;
+  return R_cam_level;
+}
+
 }  // namespace motorcade

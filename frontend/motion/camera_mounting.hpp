@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include <Eigen/Core>
+
 #include "frontend/messages.hpp"
 
 namespace motorcade {
@@ -35,5 +37,9 @@ class CameraMounting {
   std::size_t count_ = 0;                       // of all planes so far
   GroundPlane assumed_, median_;
 };
+
+/// Axes of a camera over a road, in columns: x to the right, y down to the road, z ahead. For a normal near the
+/// camera's y axis.
+Eigen::Matrix3d levelAxes(const Eigen::Vector3d& normal_cam);
 
 }  // namespace motorcade

@@ -22,14 +22,6 @@ constexpr double kMaxUnbelieved_s = 5.0;
 /// Steps beyond which pitch and roll do not go on: a car nods and sways about where it is.
 constexpr double kSteadySteps = 1.5;
 
-/// Motion forward and in yaw alone, as a car drives on.
-SE3 levelMotion(const SE3& motion) {
-  const Vector6d twist = motion.log();
-  Vector6d level = Vector6d::Zero();
-  level[2] = twist[2], level[4] = twist[4];
-  return SE3::exp(level);
-}
-
 /// Distance of a point beyond which there is hardly a digit left in its covariance.
 constexpr double kFarthest_m = 1e5;
 
@@ -70,17 +62,6 @@ double accelerated2(double sigma_per_s2, double then_s, double now_s) {
   return sigma(now_s) * sigma(now_s) - sigma(then_s) * sigma(then_s);
 }
 
-/// A motion of a car with these variances of its way ahead and its yaw, about which it shakes.
-UncertainMotion drivenOn(const SE3& motion, double ahead_m2, double yaw_rad2) {
-  constexpr double kShake_m = 0.01, kShake_rad = 0.002;
-  UncertainMotion driven{motion, Matrix6d::Zero()};
-  driven.covariance.diagonal() << Eigen::Vector3d::Constant(kShake_m * kShake_m),
-      Eigen::Vector3d::Constant(kShake_rad * kShake_rad);
-  driven.covariance(2, 2) += ahead_m2;
-  driven.covariance(4, 4) += yaw_rad2;
-  return driven;
-}
-
 /// Positive part of a difference of covariances, which is that of a step but for rounding and what frames share.
 Matrix6d positivePart(const Matrix6d& difference) {
   constexpr double kLeast = 1e-8;  // of a tenth of a millimeter, or a hundredth of a degree
@@ -106,13 +87,32 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
 PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   const double dt_s = sinceSeen_s(stamp);
   const bool is_car = secondsBetween(measured_at_, stamp) < kMaxUnbelieved_s;
-  PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0};
+  PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0, R_cam_level_};
   if (!last_motion_ || last_dt_s_ <= 0) return predicted;
   const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
   const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;
   if (steps == 0) predicted.steady_frames = 0;  // the motion that was steady is over: it may stand or go on
   predicted.T_seen_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
   return predicted;
+}
+
+/// Motion ahead and in yaw alone, as a car drives on.
+SE3 CameraOdometry::levelMotion(const SE3& motion) const {
+  const Vector6d twist = inAxes(R_cam_level_, motion).log();
+  Vector6d level = Vector6d::Zero();
+  level[2] = twist[2], level[4] = twist[4];
+  return inAxes(R_cam_level_.transpose(), SE3::exp(level));
+}
+
+/// A motion of a car with these variances of its way ahead and its yaw, about which it shakes.
+UncertainMotion CameraOdometry::drivenOn(const SE3& motion, double ahead_m2, double yaw_rad2) const {
+  constexpr double kShake_m = 0.01, kShake_rad = 0.002;
+  Vector6d variances;  // in level axes
+  variances << Eigen::Vector3d::Constant(kShake_m * kShake_m), Eigen::Vector3d::Constant(kShake_rad * kShake_rad);
+  variances[2] += ahead_m2;
+  variances[4] += yaw_rad2;
+  const Matrix6d turn = SE3(R_cam_level_, Eigen::Vector3d::Zero()).adjoint();
+  return {motion, turn * variances.asDiagonal() * turn.transpose()};
 }
 
 /// Motion ahead and in yaw that the prediction leaves out, as a twist: the camera may have stopped, or have gone on.
@@ -179,8 +179,9 @@ Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
 void CameraOdometry::rememberMotion(Timestamp stamp, const CameraMotion& motion) {
   const PredictedMotion predicted = predict(stamp);
   steady_frames_ = last_motion_ && ego_motion_.follows(motion.T_seen_now.inverse(), predicted) ? steady_frames_ + 1 : 0;
-  if (drivesAhead(motion.T_seen_now, predicted.dt_s)) ++ahead_frames_;
-  if (slides(motion.T_seen_now, predicted.dt_s)) ahead_frames_ = 0;
+  const SE3 over_road = inAxes(R_cam_level_, motion.T_seen_now);
+  if (drivesAhead(over_road, predicted.dt_s)) ++ahead_frames_;
+  if (slides(over_road, predicted.dt_s)) ahead_frames_ = 0;
   last_motion_ = motion.T_seen_now;
   last_dt_s_ = predicted.dt_s;
   measured_at_ = stamp;

@@ -7,6 +7,7 @@
 #include "core/messages.hpp"
 #include "core/stereo_camera.hpp"
 #include "frontend/matching/circular_matching.hpp"
+#include "frontend/motion/camera_mounting.hpp"
 #include "frontend/motion/camera_trail.hpp"
 #include "frontend/motion/ego_motion.hpp"
 #include "frontend/motion/point_tracks.hpp"
@@ -37,6 +38,8 @@ class CameraOdometry {
   /// Predicts the motion since the last frame that was seen: by the vehicle's own sensors, else at the velocity
   /// measured last, or standing still while none is known.
   PredictedMotion predict(Timestamp stamp) const;
+  /// Takes the camera's mounting over the road: a car goes ahead and turns over it, wherever its camera looks.
+  void levelBy(const GroundPlane& mounting) { R_cam_level_ = levelAxes(mounting.normal_cam); }
   /// True when sensors tell the motion, or it was measured not too long ago.
   bool motionKnown(Timestamp stamp) const;
 
@@ -68,7 +71,9 @@ class CameraOdometry {
   double sinceSeen_s(Timestamp stamp) const;
   PredictedMotion predictedByCamera(Timestamp stamp) const;
   Timestamp toldSince(Timestamp stamp) const;
+  SE3 levelMotion(const SE3& motion) const;
   Vector6d withheld(Timestamp stamp) const;
+  UncertainMotion drivenOn(const SE3& motion, double ahead_m2, double yaw_rad2) const;
   Told standing(Timestamp stamp) const;
   Told steady(Timestamp stamp) const;
   Odometry stepTo(Timestamp stamp, const SE3& T_seen_now, const Matrix6d& covariance, const Told& told);
@@ -78,6 +83,7 @@ class CameraOdometry {
 
   EgoMotionEstimator ego_motion_;
   VehicleOdometry vehicle_;
+  Eigen::Matrix3d R_cam_level_ = Eigen::Matrix3d::Identity();
   CameraTrail trail_;  // of frames that were seen
   int segment_ = 0;
   bool unlinked_ = false;                 // since the last frame that was good

@@ -128,6 +128,11 @@ class Sampler {
 
 }  // namespace
 
+SE3 inAxes(const Eigen::Matrix3d& R_cam_axes, const SE3& T_seen_now) {
+  const Eigen::Matrix3d R_axes_cam = R_cam_axes.transpose();
+  return {R_axes_cam * T_seen_now.rotation() * R_cam_axes, R_axes_cam * T_seen_now.translation()};
+}
+
 bool drivesAhead(const SE3& T_seen_now, double dt_s) {
   return T_seen_now.translation().z() > kDriving_mps * dt_s && !slides(T_seen_now, dt_s);
 }
@@ -147,7 +152,8 @@ double EgoMotionEstimator::penaltyOf(const PredictedMotion& predicted) {
 }
 
 bool EgoMotionEstimator::isBeyondBelief(const SE3& T_now_seen, const PredictedMotion& predicted) {
-  return predicted.ahead_frames >= kTrustedAheadFrames && slides(T_now_seen.inverse(), predicted.dt_s);
+  return predicted.ahead_frames >= kTrustedAheadFrames &&
+         slides(inAxes(predicted.R_cam_level, T_now_seen.inverse()), predicted.dt_s);
 }
 
 /// Ratio of the change from the prediction to what a vehicle can do, or to the error of its sensors; 1 is just

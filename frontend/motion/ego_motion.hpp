@@ -26,15 +26,20 @@ struct PredictedMotion {
   SE3 T_seen_now;
   double dt_s = 0;        // from the previous frame to now
   int steady_frames = 0;  // in a row that moved as the frame before them did; 0: no motion is known
-  int ahead_frames = 0;   // that the camera drove along its optical axis, as on a car, and none in which it slid
+  int ahead_frames = 0;   // that the camera drove ahead over the road, as on a car, and none in which it slid
+  /// The axes of motions ahead and aside, see levelAxes.
+  Eigen::Matrix3d R_cam_level = Eigen::Matrix3d::Identity();
   /// Covariance of T_seen_now by the vehicle's own sensors, right perturbation; empty where the motion before is taken
   /// to go on.
   std::optional<Matrix6d> by_vehicle{};
 };
 
-/// True when a camera that moves like this goes along its optical axis at the speed of a car.
+/// A motion in other axes of the camera.
+SE3 inAxes(const Eigen::Matrix3d& R_cam_axes, const SE3& T_seen_now);
+/// True when a camera that moves like this goes ahead, along z of level axes, at the speed of a car.
 bool drivesAhead(const SE3& T_seen_now, double dt_s);
-/// True when it goes sideways, beyond bumps and the chord of a curve, or turns where it stands.
+/// True when it goes sideways or upwards, beyond bumps and the chord of a curve, or turns where it stands; in level
+/// axes.
 bool slides(const SE3& T_seen_now, double dt_s);
 
 /// RANSAC over three points, then covariance-weighted refinement over all inliers. Stateless.

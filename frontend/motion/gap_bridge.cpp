@@ -90,7 +90,7 @@ std::optional<SE3> GapBridge::fit(const Gap& gap, const std::vector<FlowObservat
                             {o.u_px, o.v_px, match->disparity_px + gap.disparity_offset_px},
                             Eigen::Vector3d::Constant(sigma_px)});
   }
-  const PredictedMotion predicted{T_then_now, gap.duration_s, 0, gap.ahead_frames};
+  const PredictedMotion predicted{T_then_now, gap.duration_s, 0, gap.ahead_frames, gap.R_cam_level};
   const auto ego = ego_motion_(observations, std::vector<PointLabel>(observations.size(), PointLabel::kUnknown),
                                predicted, static_cast<std::uint64_t>(gap.now.frame->head.frame.value));
   if (!ego || ego->inlier_count < kMinAgreeing) return std::nullopt;

@@ -28,7 +28,8 @@ class GapBridge {
     const Features& now;
     double disparity_offset_px = 0;
     double duration_s = 0;
-    int ahead_frames = 0;  // see PredictedMotion
+    int ahead_frames = 0;  // see PredictedMotion, as is the next
+    Eigen::Matrix3d R_cam_level = Eigen::Matrix3d::Identity();
   };
   /// T_then_now by a search around the predicted motion; empty when the points do not agree on one.
   std::optional<SE3> locate(const Gap& gap, const SE3& predicted_T_then_now) const;

@@ -101,6 +101,7 @@ SceneMotionPtr SceneFlowSegmentation::operator()(const StereoMatchesPtr& stereo,
   if (frame.inputs.instances) addInstances(*frame.inputs.instances, motion->points);
   const std::vector<bool> violates_geometry = testGeometry();
   motion->ground = findGround(violates_geometry, *motion);
+  odometry_.levelBy(ground_plane_.mounting());
   motion->components = segmenter_(motion->points, violates_geometry, motion->ground, motion->camera_speed_mps);
 
   tracks_.setLabels(motion->points);
@@ -169,7 +170,8 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const Stereo
                      .now = now,
                      .disparity_offset_px = disparity_offset_.offset_px(),
                      .duration_s = predicted.dt_s,
-                     .ahead_frames = predicted.ahead_frames};
+                     .ahead_frames = predicted.ahead_frames,
+                     .R_cam_level = predicted.R_cam_level};
   std::optional<SE3> T_then_now;
   if (isSure(measured.camera)) T_then_now = measured.camera.T_seen_now;
   // A clock that was set back tells no length of a gap.
@@ -180,7 +182,7 @@ SceneFlowSegmentation::MeasuredFrame SceneFlowSegmentation::bridged(const Stereo
     const std::vector<RestingPoint> lost = without(measured.flow, points);
     gap.points = lost;
     measured = measure(stereo, merged(measured.flow, gap_bridge_.find(gap, *T_then_now)),
-                       {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames});
+                       {*T_then_now, predicted.dt_s, 0, predicted.ahead_frames, predicted.R_cam_level});
   }
   CameraMotion& camera = measured.camera;
   if (T_then_now && camera.status == FrameStatus::kGood && agree(camera.T_seen_now, *T_then_now)) {

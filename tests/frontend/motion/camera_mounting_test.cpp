@@ -51,5 +51,15 @@ TEST(CameraMounting, FollowsAChangeThatStays) {
   EXPECT_NEAR(mounting.plane().height_m, 1.2, 1e-9);
 }
 
+TEST(LevelAxes, TakeTheRoadToBeLevel) {
+  const Eigen::Vector3d normal_cam = expSO3({0.25, 0, 0.05}) * Eigen::Vector3d::UnitY();
+  const Eigen::Matrix3d R_cam_level = levelAxes(normal_cam);
+  EXPECT_THAT(R_cam_level.col(1), test::IsNear(normal_cam, 1e-12));
+  EXPECT_THAT(R_cam_level * R_cam_level.transpose(), test::IsNear(Eigen::Matrix3d::Identity(), 1e-12));
+  EXPECT_NEAR(R_cam_level.determinant(), 1, 1e-12);
+  EXPECT_NEAR(R_cam_level(0, 2), 0, 0.02) << "ahead is where the camera looks";
+  EXPECT_THAT(levelAxes({0, 1, 0}), test::IsNear(Eigen::Matrix3d::Identity(), 0.0));
+}
+
 }  // namespace
 }  // namespace motorcade

@@ -263,6 +263,50 @@ TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
   EXPECT_EQ(odometry.predict({3'000'000'000}).steady_frames, 0);
 }
 
+/// The mounting of a camera that looks down, and the motions of its car.
+struct LookingDown {
+  Eigen::Matrix3d R_level_cam = expSO3({-0.25, 0, 0});
+  GroundPlane mounting{R_level_cam.transpose() * Eigen::Vector3d::UnitY(), 1.65};
+  SE3 seen(const SE3& over_road) const { return inAxes(R_level_cam, over_road); }
+};
+
+TEST(CameraOdometry, ACameraThatLooksDownGoesOnOverTheRoad) {
+  const LookingDown camera;
+  const SE3 ahead = camera.seen(SE3(Eigen::Matrix3d::Identity(), {0, 0, 1}));
+  for (const bool is_level_known : {false, true}) {
+    CameraOdometry odometry({}, kRig);
+    if (is_level_known) odometry.levelBy(camera.mounting);
+    stepsUnlinkedAfter(odometry, ahead, 0);
+    const Eigen::Vector3d way = camera.R_level_cam * odometry.predict({1'100'000'000}).T_seen_now.translation();
+    if (is_level_known)
+      EXPECT_THAT(way, test::IsNear(Eigen::Vector3d(0, 0, 5), 0.1));
+    else
+      EXPECT_GT(std::abs(way.y()), 1) << "it would go into the road";
+  }
+}
+
+TEST(CameraOdometry, ACameraThatLooksDownMayHaveStoppedOnTheRoad) {
+  const LookingDown camera;
+  CameraOdometry odometry({}, kRig);
+  odometry.levelBy(camera.mounting);
+  const auto steps = stepsUnlinkedAfter(odometry, camera.seen(SE3(Eigen::Matrix3d::Identity(), {0, 0, 1})), 1);
+  const Eigen::Matrix3d variance_m2 =
+      camera.R_level_cam * steps[0].covariance.topLeftCorner<3, 3>() * camera.R_level_cam.transpose();
+  EXPECT_LT(std::sqrt(variance_m2(1, 1)), 0.011);
+  EXPECT_GT(std::sqrt(variance_m2(2, 2)), 0.02) << "by braking with 4 m/s^2";
+}
+
+TEST(CameraOdometry, ACarsCameraMayLookDown) {
+  const LookingDown camera;
+  CameraOdometry odometry({}, kRig);
+  odometry.levelBy(camera.mounting);
+  const SE3 step = camera.seen(kOdometryStep);
+  for (int frame = 0; frame < 30; ++frame) see(odometry, frameAt(frame, 100 * frame), Views(200, step, frame));
+  EXPECT_EQ(odometry.predict({3'000'000'000}).ahead_frames, 29);
+  const SE3 aside(Eigen::Matrix3d::Identity(), {0.5, 0, 0});
+  EXPECT_EQ(see(odometry, frameAt(30, 3000), Views(200, aside, 1)).status, FrameStatus::kLost);
+}
+
 TEST(CameraOdometry, ACarsCameraIsOneThatHasDrivenAhead) {
   CameraOdometry odometry({}, kRig);
   int frame = 0;
