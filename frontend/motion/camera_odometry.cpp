@@ -159,7 +159,7 @@ bool CameraOdometry::motionKnown(Timestamp stamp) const {
 Odometry CameraOdometry::add(Timestamp stamp, const CameraMotion& motion) {
   const bool is_good = motion.status == FrameStatus::kGood;
   const bool is_first = trail_.empty();
-  Told told = vehicle_.motion(toldSince(stamp), stamp);
+  Told told = is_good ? vehicle_.motion(toldSince(stamp), stamp) : vehicle_.motionUnseen(toldSince(stamp), stamp);
   if (!told && !is_good) told = standing_frames_ >= kStandingFrames ? standing(stamp) : steady(stamp);
   if (!is_first && is_good) rememberMotion(stamp, motion);
   if (motion.disputed) vehicle_.dispute();
@@ -196,7 +196,7 @@ void CameraOdometry::rememberMotion(Timestamp stamp, const CameraMotion& motion)
 
 Odometry CameraOdometry::passOver(Timestamp stamp) {
   const Timestamp before = last_stamp_.value_or(stamp);
-  const Told told = vehicle_.motion(toldSince(stamp), stamp);
+  const Told told = vehicle_.motionUnseen(toldSince(stamp), stamp);
   SE3 T_seen_now = told ? told->T_then_now : predictedByCamera(stamp).T_seen_now;
   if (!told && told_before_) {  // the sensors fall silent: on from where they led
     const SE3 T_seen_before = predictedByCamera(before).T_seen_now;

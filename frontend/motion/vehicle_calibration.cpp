@@ -125,12 +125,13 @@ VehicleCalibration::StateJacobian VehicleCalibration::jacobian(Pieces pieces, co
   return J;
 }
 
-UncertainMotion VehicleCalibration::motionOver(Pieces pieces) const {
+UncertainMotion VehicleCalibration::motionOver(Pieces pieces, double slip_mps) const {
   const SE3 T_then_now = expectedMotion(pieces, state_);
   const StateJacobian J = jacobian(pieces, T_then_now);
   const Matrix6d R_cam_vehicle = turning(mountingOf(state_).rotation().transpose());
   const Sums sums = sumsOf(pieces, speed_variance_, yaw_rate_variance_);
-  const Matrix6d in_vehicle = J * covariance_ * J.transpose() + noiseOf(sums);
+  Matrix6d in_vehicle = J * covariance_ * J.transpose() + noiseOf(sums);
+  in_vehicle(0, 0) += square(slip_mps * sums.time_s);
   return {T_then_now, R_cam_vehicle * in_vehicle * R_cam_vehicle.transpose()};
 }
 
@@ -147,7 +148,8 @@ VehicleCalibration::Surprise VehicleCalibration::compare(Pieces pieces, const Un
   const double speed_variance =
       square(kStrange_mps + kStrangeShare * speed_mps) + speed_variance_ + known(0, 0) / square(found.dt_s);
   const double yaw_variance = square(kStrange_radps) + yaw_rate_variance_ + known(5, 5) / square(found.dt_s);
-  return {std::abs(found.seen_less_expected[0]) / found.dt_s / std::sqrt(speed_variance),
+  const double speed_difference_mps = found.seen_less_expected[0] / found.dt_s;
+  return {speed_difference_mps, std::abs(speed_difference_mps) / std::sqrt(speed_variance),
           std::abs(found.seen_less_expected[5]) / found.dt_s / std::sqrt(yaw_variance)};
 }
 

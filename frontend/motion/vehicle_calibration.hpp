@@ -25,12 +25,12 @@ class VehicleCalibration {
 
   VehicleCalibration();
 
-  /// Motion of the camera over pieces of the vehicle's.
-  UncertainMotion motionOver(std::span<const VehicleSamples::Piece> pieces) const;
+  /// Motion of the camera over pieces of the vehicle's. All speeds may be wrong by the same `slip_mps`, a deviation.
+  UncertainMotion motionOver(std::span<const VehicleSamples::Piece> pieces, double slip_mps = 0) const;
 
-  /// Measured motion of the camera minus the vehicle's, in deviations of what is usual on roads.
+  /// Measured motion of the camera minus the vehicle's, also in deviations of what is usual on roads.
   struct Surprise {
-    double speed_sigmas = 0, yaw_rate_sigmas = 0;
+    double speed_mps = 0, speed_sigmas = 0, yaw_rate_sigmas = 0;
   };
   Surprise compare(std::span<const VehicleSamples::Piece> pieces, const UncertainMotion& seen) const;
   /// Learns from a motion that the camera measured over these pieces, from one frame to the next.

@@ -10,6 +10,10 @@ namespace {
 // frames in which they agreed.
 constexpr double kAgreementRate = 0.1, kLeastAgreement = 0.7, kRegainedAgreement = 0.85;
 constexpr double kStrange_sigmas = 4;
+// Wheels that slip: the yaw rate is right, and the speed not wrong by more than half of what is seen. Sensors that have
+// agreed in twenty frames, as many as it takes to be heard again, are heard where nothing is seen, up to ten frames on.
+constexpr double kMostSlip = 0.5, kLatelyAgreed = 0.35;
+constexpr int kProven = 20;
 /// Samples are late by less: a larger distance from their frame shows that a clock was set.
 constexpr double kClearlyApart_s = 0.25;
 
@@ -52,21 +56,32 @@ std::optional<UncertainMotion> VehicleOdometry::motion(Timestamp from, Timestamp
   return calibration_.motionOver(*pieces);
 }
 
+std::optional<UncertainMotion> VehicleOdometry::motionUnseen(Timestamp from, Timestamp to) const {
+  if (believed_ || !slipsLately() || from >= to) return motion(from, to);
+  const auto pieces = samples_.between(from, to);
+  if (!pieces) return std::nullopt;
+  return calibration_.motionOver(*pieces, *slip_mps_);
+}
+
+bool VehicleOdometry::slipsLately() const { return slip_mps_ && agreed_ >= kProven && agreement_ > kLatelyAgreed; }
+
 void VehicleOdometry::compare(Timestamp from, Timestamp to, const UncertainMotion& seen) {
   if (heard_ == 0 || from >= to) return;
   const auto pieces = samples_.between(from, to);
   if (!pieces) return;
-  const auto [speed_sigmas, yaw_rate_sigmas] = calibration_.compare(*pieces, seen);
-  const bool agrees = speed_sigmas < kStrange_sigmas && yaw_rate_sigmas < kStrange_sigmas;
+  const auto [speed_mps, speed_sigmas, yaw_rate_sigmas] = calibration_.compare(*pieces, seen);
+  const bool turns_alike = yaw_rate_sigmas < kStrange_sigmas, agrees = speed_sigmas < kStrange_sigmas && turns_alike;
   told_ = motionOf(*pieces, secondsBetween(from, to));
   seen_ = motionOf(seen.T_then_now, secondsBetween(from, to));
+  slip_mps_.reset();
+  if (turns_alike && std::abs(speed_mps) < kMostSlip * std::abs(seen_.speed_mps)) slip_mps_ = std::abs(speed_mps);
   if (agrees) calibration_.learn(*pieces, seen);
   judge(agrees);
 }
 
 void VehicleOdometry::judge(bool agrees) {
   agreement_ += kAgreementRate * ((agrees ? 1 : 0) - agreement_);
-  if (agrees) disputed_ = 0;
+  if (agrees) disputed_ = 0, ++agreed_;
   believed_ = agreement_ > (believed_ ? kLeastAgreement : kRegainedAgreement);
 }
 

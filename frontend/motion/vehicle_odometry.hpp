@@ -18,6 +18,9 @@ class VehicleOdometry {
   void hear(const FrameInputs& inputs, Timestamp frame);
   /// Motion between two moments; empty where samples are missing, or are not believed.
   std::optional<UncertainMotion> motion(Timestamp from, Timestamp to) const;
+  /// The same where images tell nothing. Wheels that slip are believed, too, for a while: a wrong speed is better than
+  /// none, and its deviation is what they were last wrong by.
+  std::optional<UncertainMotion> motionUnseen(Timestamp from, Timestamp to) const;
   /// Compares the sensors with a motion that the camera measured, from one frame to the next.
   void compare(Timestamp from, Timestamp to, const UncertainMotion& seen);
   /// Notes that hardly a point agrees with the sensors, where vehicles around the camera may be why.
@@ -30,6 +33,7 @@ class VehicleOdometry {
 
  private:
   void judge(bool agrees);
+  bool slipsLately() const;
 
   VehicleSamples samples_;
   VehicleCalibration calibration_;
@@ -37,7 +41,9 @@ class VehicleOdometry {
   std::int64_t ahead_ns_ = 0;  // from the samples' clock to the frames' time
   double agreement_ = 0.9;     // share of the last frames in which they agreed with the camera
   VehicleSensors::Motion told_, seen_;
-  int disputed_ = 0;  // frames since they agreed
+  std::optional<double> slip_mps_;  // in the last frame, where the wheels may have slipped in it
+  int agreed_ = 0;                  // frames in all
+  int disputed_ = 0;                // frames since they agreed
   bool believed_ = true;
 };
 

@@ -139,6 +139,37 @@ TEST_F(InTheDark, TheCameraGoesOnAsTheVehicleDoes) {
   EXPECT_TRUE(odometry_.motionKnown(drive_.stampOf(kSeen + kDark)));
 }
 
+/// Samples that are wrong in the last six frames before the dark.
+template <class Spoil>
+std::vector<VehicleMotionSample> spoiledInto(std::vector<VehicleMotionSample> samples, int seen, const Spoil& spoil) {
+  for (auto& sample : samples) {
+    const double frames = static_cast<double>(sample.stamp.ns) * 1e-8 - seen;
+    if (frames > -6 && frames < 0) spoil(sample);
+  }
+  return samples;
+}
+
+TEST_F(InTheDark, WheelsThatSlippedWhenItBeganAreHeard) {
+  constexpr double kSlip_mps = 3;
+  drive(spoiledInto(drive_.samples, kSeen, [](auto& sample) { sample.speed_mps += kSlip_mps; }));
+  ASSERT_FALSE(odometry_.vehicleSensors()->believed);
+  const Vector6d error = (drive_.motion(kSeen - 1, kSeen + kDark - 1).inverse() * steppedTo(kDark)).log();
+  EXPECT_LT(error.head<3>().norm(), 2) << "of 30 m: they no longer slip";
+  double variance_m2 = 0;
+  for (const Odometry& step : steps_) variance_m2 += step.covariance.topLeftCorner<3, 3>().trace();
+  EXPECT_NEAR(std::sqrt(variance_m2), 3 * kSlip_mps, 2) << "they might";
+}
+
+TEST_F(InTheDark, WhatElseWasWrongWhenItBeganIsNotHeard) {
+  const auto kmh = [](auto& sample) { sample.speed_mps *= 3.6; };
+  const auto turning = [](auto& sample) { sample.yaw_rate_radps += 0.3; };
+  drive(spoiledInto(drive_.samples, kSeen, kmh));
+  EXPECT_FALSE(steps_[20].told);
+  steps_.clear(), odometry_ = {{}, test::kRig};
+  drive(spoiledInto(drive_.samples, kSeen, turning));
+  EXPECT_FALSE(steps_[20].told);
+}
+
 /// The clock that stamps samples is set back by two seconds in frame 20, or that of the camera alone.
 class AfterAClockWasSetBack : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfBothAndOfTheCamera, AfterAClockWasSetBack, testing::Bool());
