@@ -14,6 +14,7 @@
 #include "frontend/image/image_pyramid.hpp"
 #include "frontend/matching/followed_point.hpp"
 #include "frontend/matching/image_content.hpp"
+#include "frontend/matching/image_jump.hpp"
 #include "frontend/matching/occupancy.hpp"
 #include "frontend/matching/point_follower.hpp"
 #include "frontend/matching/young_point_search.hpp"
@@ -89,10 +90,12 @@ struct OpticalFlowTracker::State {
   bool mayWait(Timestamp now) const;
   bool follow(const Features& now);
   std::vector<std::optional<AlignedPatch>> findMoving(const PointFollower& follower, double intervals,
-                                                      std::span<const int> order) const;
+                                                      std::span<const int> order, const Shift& jump) const;
+  std::optional<Shift> jumpTo(const Features& now, const PointFollower& follower, std::span<const int> order) const;
   bool isFrozen(const Features& now) const;
   bool isSparse(const Features& now) const;
   std::optional<double> shareOf(const std::vector<std::optional<AlignedPatch>>& found) const;
+  double sharpness(const Features& now) const;
   bool isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found, double intervals) const;
   void followYoung(const PointFollower& follower, const Features& now, std::span<const int> order);
   void removeLost(const Image& now);
@@ -101,18 +104,19 @@ struct OpticalFlowTracker::State {
   void followDescriptors(const Features& now);
 };
 
-/// Finds the points that moved before, with their last shift as the guess.
+/// Finds the points that moved before, with their last shift and a jump as the guess.
 std::vector<std::optional<AlignedPatch>> OpticalFlowTracker::State::findMoving(const PointFollower& follower,
                                                                                double intervals,
-                                                                               std::span<const int> order) const {
+                                                                               std::span<const int> order,
+                                                                               const Shift& jump) const {
   const int level = std::min(kMovingLevel, follower.coarsestLevel());
   std::vector<std::optional<AlignedPatch>> found(points.size());
   forEachItem(order.size(), [&](std::size_t k) {
     const int i = order[k];
     const FlowObservation& before = points[i].observation;
     if (before.age < 2) return;
-    const Shift guess = shiftAfter(points[i], intervals);
-    found[i] = follower.follow(before, guess, level);
+    const Shift last = shiftAfter(points[i], intervals);
+    found[i] = follower.follow(before, {last.du_px + jump.du_px, last.dv_px + jump.dv_px}, level);
   });
   return found;
 }
@@ -125,11 +129,24 @@ std::optional<double> OpticalFlowTracker::State::shareOf(const std::vector<std::
   return static_cast<double>(seen) / static_cast<double>(moving);
 }
 
+/// Texture of an image as a share of that in the image before.
+double OpticalFlowTracker::State::sharpness(const Features& now) const {
+  return textureOf(now) / std::max(textureOf(*previous), 1e-9);
+}
+
+/// Jump of a sharp image, in which few points may be found for that.
+std::optional<Shift> OpticalFlowTracker::State::jumpTo(const Features& now, const PointFollower& follower,
+                                                       std::span<const int> order) const {
+  if (isUneven(intervalsSince(now)) || isFrozen(now) || sharpness(now) < kSharpShare) return std::nullopt;
+  const Image& image = now.left.levels.front();
+  const NeighborShifts none({}, image.width(), image.height());
+  return imageJump(points, order, YoungPointSearch(follower, *previous, now, none, params.max_flow_px));
+}
+
 bool OpticalFlowTracker::State::isOfNoUse(const Features& now, const std::vector<std::optional<AlignedPatch>>& found,
                                           double intervals) const {
-  if (isFrozen(now)) return true;
-  const double texture = textureOf(now) / std::max(textureOf(*previous), 1e-9);
-  if (texture < kMinTextureShare) return true;
+  const double texture = sharpness(now);
+  if (isFrozen(now) || texture < kMinTextureShare) return true;
   const double min_share = (texture < kSharpShare ? kMinFoundShare : kMinSharpFoundShare) * usual_share /
                            (isUneven(intervals) ? std::max(intervals, 1.0) : 1.0);
   const auto share = shareOf(found);
@@ -181,8 +198,12 @@ bool OpticalFlowTracker::State::follow(const Features& now) {
   const Image& image = now.left.levels.front();
   const double intervals = intervalsSince(now);
   const std::vector<int> order = byPlace(points, image);
-  const auto found = findMoving(follower, intervals, order);
-  if (isOfNoUse(now, found, intervals)) return false;
+  auto found = findMoving(follower, intervals, order, {});
+  if (isOfNoUse(now, found, intervals)) {
+    const auto jump = jumpTo(now, follower, order);
+    if (jump) found = findMoving(follower, intervals, order, *jump);
+    if (!jump || isOfNoUse(now, found, intervals)) return false;
+  }
   if (const auto share = isUneven(intervals) ? std::nullopt : shareOf(found))
     usual_share = kUsualMemory * usual_share + (1 - kUsualMemory) * *share;
   interval_s = secondsBetween(previous->frame->head.stamp, now.frame->head.stamp);
@@ -207,7 +228,7 @@ double OpticalFlowTracker::State::intervalsSince(const Features& now) const {
 /// the image.
 bool OpticalFlowTracker::State::isSparse(const Features& now) const {
   return secondsBetween(previous->frame->head.stamp, now.frame->head.stamp) > kSparse_s && !isFrozen(now) &&
-         textureOf(now) >= kSharpShare * textureOf(*previous);
+         sharpness(now) >= kSharpShare;
 }
 
 bool OpticalFlowTracker::State::mayWait(Timestamp now) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -21,6 +22,9 @@ constexpr double kMaxUnbelieved_s = 5.0;
 
 /// Steps beyond which pitch and roll do not go on: a car nods and sways about where it is.
 constexpr double kSteadySteps = 1.5;
+
+/// What two numbers have in common: the one nearer to zero, or zero if their signs differ.
+double commonPart(double a, double b) { return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b; }
 
 /// Distance of a point beyond which there is hardly a digit left in its covariance.
 constexpr double kFarthest_m = 1e5;
@@ -92,15 +96,15 @@ PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
   const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;
   if (steps == 0) predicted.steady_frames = 0;  // the motion that was steady is over: it may stand or go on
-  predicted.T_seen_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(*last_motion_), steps);
+  predicted.T_seen_now = scaledMotion(steps < kSteadySteps ? *last_motion_ : levelMotion(), steps);
   return predicted;
 }
 
-/// Motion ahead and in yaw alone, as a car drives on.
-SE3 CameraOdometry::levelMotion(const SE3& motion) const {
-  const Vector6d twist = inAxes(R_cam_level_, motion).log();
+/// The last motion as a car drives on: ahead, and in yaw as far as it turned in both of the last steps. A jolt is over.
+SE3 CameraOdometry::levelMotion() const {
   Vector6d level = Vector6d::Zero();
-  level[2] = twist[2], level[4] = twist[4];
+  level[2] = inAxes(R_cam_level_, *last_motion_).log()[2];
+  level[4] = last_dt_s_ * turn_radps_;
   return inAxes(R_cam_level_.transpose(), SE3::exp(level));
 }
 
@@ -121,7 +125,7 @@ Vector6d CameraOdometry::withheld(Timestamp stamp) const {
   constexpr double kLongest_s = 60;  // nobody asks for more
   if (!last_motion_ || last_dt_s_ <= 0) return Vector6d::Zero();
   const double withheld_s = std::clamp(secondsBetween(measured_at_, stamp) - kMaxPrediction_s, 0.0, kLongest_s);
-  return withheld_s / last_dt_s_ * levelMotion(*last_motion_).log();
+  return withheld_s / last_dt_s_ * levelMotion().log();
 }
 
 /// The motion since the last frame that was seen, if the camera stood when it was measured last. Vehicles that
@@ -182,6 +186,9 @@ void CameraOdometry::rememberMotion(Timestamp stamp, const CameraMotion& motion)
   const SE3 over_road = inAxes(R_cam_level_, motion.T_seen_now);
   if (drivesAhead(over_road, predicted.dt_s)) ++ahead_frames_;
   if (slides(over_road, predicted.dt_s)) ahead_frames_ = 0;
+  const double yaw_rate_radps = predicted.dt_s > 0 ? over_road.log()[4] / predicted.dt_s : 0;
+  turn_radps_ = last_motion_ ? commonPart(yaw_rate_radps, yaw_rate_radps_) : yaw_rate_radps;
+  yaw_rate_radps_ = yaw_rate_radps;
   last_motion_ = motion.T_seen_now;
   last_dt_s_ = predicted.dt_s;
   measured_at_ = stamp;

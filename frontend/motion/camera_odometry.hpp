@@ -71,7 +71,7 @@ class CameraOdometry {
   double sinceSeen_s(Timestamp stamp) const;
   PredictedMotion predictedByCamera(Timestamp stamp) const;
   Timestamp toldSince(Timestamp stamp) const;
-  SE3 levelMotion(const SE3& motion) const;
+  SE3 levelMotion() const;
   Vector6d withheld(Timestamp stamp) const;
   UncertainMotion drivenOn(const SE3& motion, double ahead_m2, double yaw_rad2) const;
   Told standing(Timestamp stamp) const;
@@ -93,6 +93,7 @@ class CameraOdometry {
   std::optional<Timestamp> last_stamp_;   // of the last frame, seen or not
   std::optional<SE3> last_motion_;        // as last measured, from frame to frame
   double last_dt_s_ = 0;
+  double yaw_rate_radps_ = 0, turn_radps_ = 0;  // of the last motion, and the part of it that the one before had, too
   Timestamp measured_at_;
   int steady_frames_ = 0, ahead_frames_ = 0;  // see PredictedMotion
   int standing_frames_ = 0;                   // in a row; degraded ones in which it seems to move are passed over

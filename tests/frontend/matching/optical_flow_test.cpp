@@ -74,6 +74,30 @@ TEST(OpticalFlowTracker, FollowsLargeMotionFromTheFirstFrame) {
   EXPECT_GE(followed, 100);
 }
 
+/// A bump in the road, or the begin of a turn.
+TEST(OpticalFlowTracker, FollowsAJumpOfTheImage) {
+  const test::Texture texture(61, 7, 60);
+  const FeaturePreparation prepare{{}};
+  for (const double jump_px : {12.0, 45.0}) {
+    OpticalFlowTracker track({});
+    const auto at = [&](int frame) {
+      const double v_px = frame >= 5 ? jump_px : 0;
+      const Image image = test::render(kFlowWidth_px, kFlowHeight_px,
+                                       [&](double x, double y) { return texture(x - 2 * frame, y - v_px); },
+                                       {.noise = 2, .seed = static_cast<unsigned>(frame)});
+      return track(prepare(test::stereoFrame(frame, image, image)));
+    };
+    std::map<PointId, Eigen::Vector2d> before;
+    for (int frame = 0; frame < 5; ++frame)
+      for (const FlowObservation& point : at(frame)->observations) before[point.point] = {point.u_px, point.v_px};
+    int followed = 0;
+    for (const FlowObservation& point : at(5)->observations)
+      if (point.age > 2)
+        followed += (Eigen::Vector2d(point.u_px - 2, point.v_px - jump_px) - before[point.point]).norm() < 0.5;
+    EXPECT_GE(followed, 100) << jump_px;
+  }
+}
+
 /// A block of another texture that moves to the right across a wall at rest.
 TEST(OpticalFlowTracker, FollowsWhatCrossesAStandingScene) {
   constexpr double kSpeed_px = 45;

@@ -263,6 +263,17 @@ TEST(CameraOdometry, AMotionThatIsOverIsNoLongerSteady) {
   EXPECT_EQ(odometry.predict({3'000'000'000}).steady_frames, 0);
 }
 
+/// A car hits a curb.
+TEST(CameraOdometry, AJoltDoesNotGoOnInTheDark) {
+  CameraOdometry odometry({}, kRig);
+  const SE3 ahead(Eigen::Matrix3d::Identity(), {0, 0, 1}), jolted(expSO3({0.02, 0.04, 0}), {0, 0, 1});
+  stepsUnlinkedAfter(odometry, ahead, 0);
+  see(odometry, frameAt(7, 700), Views(200, jolted, 7));
+  const SE3 predicted = odometry.predict({1'100'000'000}).T_seen_now;
+  EXPECT_LT(predicted.log().tail<3>().norm(), 0.002);
+  EXPECT_NEAR(predicted.translation().z(), 4, 0.1);
+}
+
 /// The mounting of a camera that looks down, and the motions of its car.
 struct LookingDown {
   Eigen::Matrix3d R_level_cam = expSO3({-0.25, 0, 0});
