@@ -49,7 +49,7 @@ std::vector<Parameter> parametersOf(CalibrationSigmas& sigmas) {
     return numberParameter(name, value, {0, most}, gain);
   };
   return {sigma("focal", sigmas.focal, 0.1,
-                "how far the focal lengths may be off, as a share: standard deviation, part of all covariances; 0 "
+                "how far the focal lengths may be off, as a share: standard deviation, part of most covariances; 0 "
                 "where the calibration is exact"),
           sigma("middle_px", sigmas.middle_px, 50, "the same of the principal points, each way"),
           sigma("distortion", sigmas.distortion, 0.5, "the same of the lenses' radial term k1"),

@@ -6,9 +6,9 @@
 ///   while (motorcade_tracker_wait(tracker, 100, &result) == MOTORCADE_OK) motorcade_result_frame(result, &frame), ...
 ///
 /// T_a_b takes coordinates in b to coordinates in a: three rows of four. cam is the left camera, rectified: x right,
-/// y down, z ahead (MOTORCADE_AXES_REP103: x ahead, y left, z up); world is the first frame's cam; body is an object's:
-/// x in its direction of travel, y left, z up. Covariances are row by row, of perturbations (rho, phi) [m, rad] on the
-/// right, T exp(rho, phi). Units are in the names.
+/// y down, z ahead (MOTORCADE_AXES_REP103: x ahead, y left, z up); world is the cam of the first frame that shows
+/// points; body is an object's: x as it traveled when it was confirmed, y left, z up. Covariances are row by row, of
+/// perturbations (rho, phi) [m, rad] on the right, T exp(rho, phi). Units are in the names.
 ///
 /// A struct begins with its size, which the caller sets: motorcade_frame frame = {.struct_size = sizeof frame};
 /// Later versions append members. Those that an older program's struct lacks are not written, and have their default

@@ -10,8 +10,8 @@
 /// coordinates in b to coordinates in a, p_a = T_a_b * p_b: the upper three rows of a 4x4 matrix, row by row. Frames:
 ///   cam    the left camera, rectified: x right, y down, z ahead (optical, as in OpenCV); with `Axes::kRep103` x ahead,
 ///          y left, z up (as ROS wants of bodies)
-///   world  the first frame's cam
-///   body   of an object, fixed to it: x in the direction of travel, y left, z up, with either axes
+///   world  the cam of the first frame that shows points
+///   body   of an object, fixed to it: x as it traveled when it was confirmed, y left, z up, with either axes
 /// Covariances are row by row, of (rho, phi) in T exp(rho, phi) [m, rad]. Those of the camera's pose and motion and of
 /// objects' positions and velocities include typical errors of a calibration; the others do not.
 #include <array>
