@@ -92,7 +92,9 @@ int leastAround(const Geometry& g, const SixteenBytes& now, float u_px, float v_
 /// The same along a stretch; kOutside where a part of it is not in the image.
 int leastAlong(const Geometry& g, const SixteenBytes& now, const Stretch& rested, int lane) {
   const float du = rested.du[lane], dv = rested.dv[lane], step_px = static_cast<float>(2 * g.slack.cells + 1);
-  const int steps = static_cast<int>(std::ceil(std::sqrt(du * du + dv * dv) / step_px));
+  constexpr float kHalfACell = 0.5F;  // by which places are rounded, too
+  const float reach = std::max(std::sqrt(du * du + dv * dv) - kHalfACell, 0.F);
+  const int steps = static_cast<int>(std::ceil(reach / step_px));
   int least = kOutside;
   for (int step = -steps; step <= steps; ++step) {
     const float share = steps > 0 ? static_cast<float>(step) / static_cast<float>(steps) : 0;
