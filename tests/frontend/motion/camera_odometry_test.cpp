@@ -276,7 +276,7 @@ TEST(CameraOdometry, AJoltDoesNotGoOnInTheDark) {
 
 /// The mounting of a camera that looks down, and the motions of its car.
 struct LookingDown {
-  Eigen::Matrix3d R_level_cam = expSO3({-0.25, 0, 0});
+  Eigen::Matrix3d R_level_cam = expSO3({-0.4, 0, 0});
   GroundPlane mounting{R_level_cam.transpose() * Eigen::Vector3d::UnitY(), 1.65};
   SE3 seen(const SE3& over_road) const { return inAxes(R_level_cam, over_road); }
 };
