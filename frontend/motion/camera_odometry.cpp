@@ -23,7 +23,7 @@ constexpr double kMaxUnbelieved_s = 5.0;
 /// Steps beyond which pitch and roll do not go on: a car nods and sways about where it is.
 constexpr double kSteadySteps = 1.5;
 
-/// What two numbers have in common: the one nearer to zero, or zero if their signs differ.
+/// Common part of two numbers: the one nearer to zero, or zero if their signs differ.
 double commonPart(double a, double b) { return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b; }
 
 /// Distance of a point beyond which there is hardly a digit left in its covariance.

@@ -45,7 +45,7 @@ class GroundPlaneEstimator {
   /// Finds the plane; the caller leaves out points that move. Keeps the last plane when too few points lie on one.
   GroundPlane operator()(std::span<const GroundCandidate> points, std::uint64_t seed);
 
-  /// How the camera is mounted over the road, as far as it is known.
+  /// Mounting of the camera over the road, as far as it is known.
   const GroundPlane& mounting() const { return mounting_.plane(); }
 
   /// True when a point lies on the last plane, as far as can be told.

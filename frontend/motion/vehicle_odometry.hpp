@@ -18,8 +18,8 @@ class VehicleOdometry {
   void hear(const FrameInputs& inputs, Timestamp frame);
   /// Motion between two moments; empty where samples are missing, or are not believed.
   std::optional<UncertainMotion> motion(Timestamp from, Timestamp to) const;
-  /// The same where images tell nothing. Wheels that slip are believed, too, for a while: a wrong speed is better than
-  /// none, and its deviation is what they were last wrong by.
+  /// The same where images tell nothing. The speed of wheels that slip is believed, too, for a while: a wrong one is
+  /// better than none. Its deviation is its last error.
   std::optional<UncertainMotion> motionUnseen(Timestamp from, Timestamp to) const;
   /// Compares the sensors with a motion that the camera measured, from one frame to the next.
   void compare(Timestamp from, Timestamp to, const UncertainMotion& seen);
@@ -41,8 +41,8 @@ class VehicleOdometry {
   std::int64_t ahead_ns_ = 0;  // from the samples' clock to the frames' time
   double agreement_ = 0.9;     // share of the last frames in which they agreed with the camera
   VehicleSensors::Motion told_, seen_;
-  std::optional<double> slip_mps_;  // in the last frame, where the wheels may have slipped in it
-  int agreed_ = 0;                  // frames in all
+  std::optional<double> slip_mps_;  // error of the speed in the last frame, where it may be by slip
+  int agreed_ = 0;                  // frames in which they agreed, in all
   int disputed_ = 0;                // frames since they agreed
   bool believed_ = true;
 };

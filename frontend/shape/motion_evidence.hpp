@@ -17,7 +17,7 @@ class MotionEvidence {
  public:
   static constexpr int kPixels = 9;  // around a cell that are compared
 
-  /// How far places may be from where they are predicted.
+  /// Distances by which places may be off from where they are predicted.
   struct Slack {
     int cells = 0;           // around the place, of motion as of rest
     float disparity_px = 0;  // by which the cell's own may be wrong: moves the place of rest along its epipolar line
