@@ -91,7 +91,12 @@ PredictedMotion CameraOdometry::predict(Timestamp stamp) const {
 PredictedMotion CameraOdometry::predictedByCamera(Timestamp stamp) const {
   const double dt_s = sinceSeen_s(stamp);
   const bool is_car = secondsBetween(measured_at_, stamp) < kMaxUnbelieved_s;
-  PredictedMotion predicted{SE3{}, dt_s, steady_frames_, is_car ? ahead_frames_ : 0, R_cam_level_};
+  PredictedMotion predicted{.T_seen_now = SE3{},
+                            .dt_s = dt_s,
+                            .steady_frames = steady_frames_,
+                            .ahead_frames = is_car ? ahead_frames_ : 0,
+                            .R_cam_level = R_cam_level_,
+                            .stood = standing_frames_ >= kStandingFrames && standing(stamp)};
   if (!last_motion_ || last_dt_s_ <= 0) return predicted;
   const double predicted_s = secondsBetween(measured_at_, stamp);  // of which dt_s are the last
   const double steps = std::clamp(kMaxPrediction_s - (predicted_s - dt_s), 0.0, dt_s) / last_dt_s_;

@@ -236,7 +236,8 @@ std::optional<EgoMotion> EgoMotionEstimator::operator()(std::span<const PoseObse
   if (ego.inlier_count < params_.min_inliers) return std::nullopt;
   const bool by_chance = ego.inlier_count < kByChance * static_cast<double>(observations.size());
   const bool is_steady = surprise(fit->T_cam_ref, predicted) < kSteadierThan;
-  const bool is_known = predicted.steady_frames >= kTrustedSteadyFrames && !predicted.by_vehicle;
+  const bool was_steady = predicted.steady_frames >= kTrustedSteadyFrames || predicted.stood;
+  const bool is_known = was_steady && !predicted.by_vehicle;
   if (by_chance && is_known && !is_steady) return std::nullopt;
   return ego;
 }

@@ -32,6 +32,8 @@ struct PredictedMotion {
   /// Covariance of T_seen_now by the vehicle's own sensors, right perturbation; empty where the motion before is taken
   /// to go on.
   std::optional<Matrix6d> by_vehicle{};
+  /// The camera stood when it was seen last, a few seconds ago. Few points do not tell that it started since.
+  bool stood = false;
 };
 
 /// A motion in other axes of the camera.

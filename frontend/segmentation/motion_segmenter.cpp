@@ -13,6 +13,7 @@
 #include "frontend/geometry/delaunay.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/segmentation/geometric_constraints.hpp"
+#include "frontend/segmentation/rigid_parts.hpp"
 
 namespace motorcade {
 namespace {
@@ -61,8 +62,6 @@ namespace {
 constexpr double kSpeedTolerance_mps = 0.2;  // errors of the model: acceleration, points that are no corners in space
 constexpr double kMaxTurnRate_radps = 0.4;   // of a car in a tight turn: at 10 m/s it accelerates aside by 4 m/s^2
 constexpr double kMaxSpeedSigma_mps = 4.0;   // points less certain than this are no vertices: they would join anything
-constexpr int kPoolingIterations = 3;    // from the median to the weighted mean: the weights hardly change after two
-constexpr double kNoInformation = 1e-6;  // keeps sums of information regular [s^2/m^2]
 
 // Share of the tolerances and of the largest gap within which two points may be on one vehicle: first all of it, and
 // half where that joins several.
@@ -73,46 +72,12 @@ constexpr double kMaxHeight_m = 2.5;      // of its lowest point above the road:
 constexpr double kMaxVerticalRatio = 0.35;  // vertical part of a vehicle's velocity: roads are less steep
 constexpr double kNoiseSigmas = 2;          // of room for noise where a size or a speed is compared with a bound
 
-Eigen::Matrix3d velocityCovariance(const ScenePoint& p) { return p.flow->covariance.bottomRightCorner<3, 3>(); }
 Eigen::Matrix3d positionCovariance(const ScenePoint& p) { return p.flow->covariance.topLeftCorner<3, 3>(); }
 
 /// Speed in standard deviations: the Mahalanobis distance from rest.
 double significanceOf(const MotionComponent& component) {
   const Eigen::Vector3d& v = component.velocity_mps;
   return std::sqrt(v.dot(component.velocity_covariance.inverse() * v));
-}
-
-struct PooledVelocity {
-  Eigen::Vector3d velocity_mps;
-  Eigen::Matrix3d covariance;
-};
-
-/// Information-weighted mean velocity of the members. It starts from the component-wise median, which outliers cannot
-/// move.
-PooledVelocity poolVelocities(const std::vector<int>& members, const std::vector<ScenePoint>& points, double max_chi2) {
-  Eigen::Vector3d velocity;
-  std::vector<double> values(members.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(members.begin(), members.end(), values.begin(),
-                   [&](int i) { return points[i].flow->velocity_mps[axis]; });
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    velocity[axis] = *middle;
-  }
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (int iteration = 0; iteration < kPoolingIterations; ++iteration) {
-    information = Eigen::Matrix3d::Identity() * kNoInformation;
-    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
-    for (const int i : members) {
-      const Eigen::Matrix3d W = velocityCovariance(points[i]).inverse();
-      const Eigen::Vector3d difference = points[i].flow->velocity_mps - velocity;
-      const double chi2 = difference.dot(W * difference), weight = chi2 < max_chi2 ? 1.0 : max_chi2 / chi2;
-      information += weight * W;
-      weighted += weight * W * points[i].flow->velocity_mps;
-    }
-    velocity = information.inverse() * weighted;
-  }
-  return {velocity, information.inverse()};
 }
 
 }  // namespace
@@ -163,10 +128,10 @@ std::vector<MotionComponent> MotionSegmenter::split(const Scene& scene, std::spa
   const auto together = [&](int a, int b) { return belong_together(vertices[a], vertices[b], slack); };
   for (auto& members : cutDelaunayComponents(pixels, together)) {
     for (int& i : members) i = vertices[i];
-    MotionComponent component = describe(std::move(members), scene.points, scene.camera_speed_mps);
-    component.label = decide(component, scene.points, scene.ground);
-    if (slack == kWhole && isQueue(component, scene.points)) {
-      std::ranges::move(split(scene, component.points, belong_together, kHalved), std::back_inserter(components));
+    MotionComponent component = describe(scene, std::move(members));
+    if (const auto parts = partsToSplit(component, scene.points, slack); !parts.empty()) {
+      for (const std::vector<int>& part : parts)
+        std::ranges::move(split(scene, part, belong_together, kHalved), std::back_inserter(components));
       continue;
     }
     for (const int i : component.points) scene.points[i].label = component.label;
@@ -175,8 +140,19 @@ std::vector<MotionComponent> MotionSegmenter::split(const Scene& scene, std::spa
   return components;
 }
 
-MotionComponent MotionSegmenter::describe(std::vector<int> members, const std::vector<ScenePoint>& points,
-                                          double camera_speed_mps) const {
+/// Parts of a component that holds several bodies: all of it for a queue, else those that do not move as one. Empty for
+/// one body.
+std::vector<std::vector<int>> MotionSegmenter::partsToSplit(const MotionComponent& component,
+                                                            const std::vector<ScenePoint>& points, double slack) const {
+  if (slack == kWhole && isQueue(component, points)) return {component.points};
+  if (component.label != PointLabel::kMoving) return {};
+  std::vector<std::vector<int>> parts = rigidParts(component.points, points);
+  if (parts.size() == 1) parts.clear();
+  return parts;
+}
+
+MotionComponent MotionSegmenter::describe(const Scene& scene, std::vector<int> members) const {
+  const std::vector<ScenePoint>& points = scene.points;
   MotionComponent component;
   component.points = std::move(members);
   for (const int i : component.points)
@@ -184,7 +160,8 @@ MotionComponent MotionSegmenter::describe(std::vector<int> members, const std::v
   const auto pooled = poolVelocities(component.points, points, params_.max_flow_chi2);
   component.velocity_mps = pooled.velocity_mps;
   component.velocity_covariance =
-      pooled.covariance + sharedVelocityCovariance(camera_, component.centroid_cam, camera_speed_mps);
+      pooled.covariance + sharedVelocityCovariance(camera_, component.centroid_cam, scene.camera_speed_mps);
+  component.label = decide(component, points, scene.ground);
   return component;
 }
 

@@ -57,8 +57,9 @@ class MotionSegmenter {
   using Bond = std::function<bool(int, int, double slack)>;
   std::vector<MotionComponent> split(const Scene& scene, std::span<const int> vertices, const Bond& belong_together,
                                      double slack = 1) const;
-  MotionComponent describe(std::vector<int> members, const std::vector<ScenePoint>& points,
-                           double camera_speed_mps) const;
+  std::vector<std::vector<int>> partsToSplit(const MotionComponent& component, const std::vector<ScenePoint>& points,
+                                             double slack) const;
+  MotionComponent describe(const Scene& scene, std::vector<int> members) const;
   PointLabel decide(const MotionComponent& component, const std::vector<ScenePoint>& points,
                     const GroundPlane& ground) const;
   bool isQueue(const MotionComponent& component, const std::vector<ScenePoint>& points) const;

@@ -80,6 +80,7 @@ void ObjectTracker::endAll(FrameMeasurements& measurements) {
 }
 
 void ObjectTracker::follow(TrackedObject& object, const SceneMotion& scene, FrameMeasurements& measurements) {
+  disownOtherBodies(object, scene);
   auto observation = motion_.follow(object, scene, T_world_cam_);
   if (!observation) return coast(object, scene, measurements);
   object.life.observe();

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "core/elementary.hpp"
+#include "frontend/segmentation/rigid_parts.hpp"
 #include "frontend/tracking/body_axes.hpp"
+#include "frontend/tracking/object_motion.hpp"
 #include "frontend/tracking/see_through.hpp"
 #include "frontend/tracking/small_body.hpp"
 
@@ -88,6 +90,22 @@ void PointAdoption::operator()(TrackedObject& object, const SceneMotion& scene, 
     for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) consider(i);
   }
   object.adopt(adopted);
+}
+
+void disownOtherBodies(TrackedObject& object, const SceneMotion& scene) {
+  std::vector<int> members;
+  for (const BodyPoint& p : object.points)
+    if (const ScenePoint* seen = findPoint(scene, p.point); seen && seen->flow && !seen->ambiguous)
+      members.push_back(static_cast<int>(seen - scene.points.data()));
+  const std::vector<std::vector<int>> parts = rigidParts(members, scene.points);
+  if (parts.size() < 2) return;
+  const auto most = std::ranges::max_element(parts, {}, &std::vector<int>::size);
+  const auto isOfOther = [&](const BodyPoint& p) {
+    return std::ranges::any_of(parts, [&](const std::vector<int>& part) {
+      return &part != &*most && std::ranges::any_of(part, [&](int i) { return scene.points[i].point == p.point; });
+    });
+  };
+  std::erase_if(object.points, isOfOther);
 }
 
 }  // namespace motorcade

@@ -20,4 +20,8 @@ class PointAdoption {
   StereoCamera camera_;
 };
 
+/// Drops the points of an object that move apart from most of its others: they lie on another body, which seemed to
+/// move alike when they joined.
+void disownOtherBodies(TrackedObject& object, const SceneMotion& scene);
+
 }  // namespace motorcade

@@ -181,6 +181,16 @@ TEST(CameraOdometry, WhereACameraIsThatStoodLongAgoNobodyKnows) {
   EXPECT_EQ(odometry.segment(), 1);
 }
 
+TEST(CameraOdometry, ThatItStoodIsKnownForThreeSeconds) {
+  CameraOdometry stood({}, kRig), drove({}, kRig);
+  stepsUnlinkedAfter(stood, SE3{}, 0);
+  stepsUnlinkedAfter(drove, kOdometryStep, 0);
+  const Timestamp soon{3'000'000'000}, late{4'000'000'000};
+  EXPECT_TRUE(stood.predict(soon).stood);
+  EXPECT_FALSE(stood.predict(late).stood);
+  EXPECT_FALSE(drove.predict(soon).stood);
+}
+
 TEST(CameraOdometry, AFewPointsThatMoveDoNotStartACamera) {
   CameraOdometry odometry({}, kRig);
   const SE3 crept(Eigen::Matrix3d::Identity(), {0, 0, 0.05});

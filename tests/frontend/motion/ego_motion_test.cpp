@@ -163,7 +163,7 @@ TEST(EgoMotion, ACarDoesNotSlideWhereATruckFillsTheView) {
 /// Some points of vehicles that fill the view agree with a motion that is none.
 TEST(EgoMotion, AMotionOnWhichFewAgreeMustBeSteady) {
   const EgoMotionEstimator estimate({}, kRig);
-  const auto believed = [&](int agreeing, double change_m) {
+  const auto believed = [&](int agreeing, double change_m, const PredictedMotion& known) {
     Street s = street(agreeing, 0, 1);
     Noise noise(2);
     while (s.observations.size() < 400) {  // each with a motion of its own
@@ -173,13 +173,19 @@ TEST(EgoMotion, AMotionOnWhichFewAgreeMustBeSteady) {
       s.observations.push_back(*o);
       s.moves.push_back(true);
     }
-    const SE3 before = trueMotion() * SE3(Eigen::Matrix3d::Identity(), {0, 0, change_m});
-    return estimate(s.observations, s.labels(), {before, 0.1, 10}, 1).has_value();
+    PredictedMotion predicted = known;
+    predicted.T_seen_now = trueMotion() * SE3(Eigen::Matrix3d::Identity(), {0, 0, change_m});
+    return estimate(s.observations, s.labels(), predicted, 1).has_value();
   };
   constexpr double kSudden_m = 0.15, kSteady_m = 0.05;  // 15 and 5 m/s^2
-  EXPECT_FALSE(believed(20, kSudden_m));
-  EXPECT_TRUE(believed(20, kSteady_m));
-  EXPECT_TRUE(believed(80, kSudden_m));
+  const PredictedMotion steady{.T_seen_now = {}, .dt_s = 0.1, .steady_frames = 10},
+      unknown{.T_seen_now = {}, .dt_s = 0.1}, stood{.T_seen_now = {}, .dt_s = 0.1, .stood = true};
+  for (const PredictedMotion& known : {steady, stood}) {
+    EXPECT_FALSE(believed(20, kSudden_m, known));
+    EXPECT_TRUE(believed(20, kSteady_m, known));
+    EXPECT_TRUE(believed(80, kSudden_m, known));
+  }
+  EXPECT_TRUE(believed(20, kSudden_m, unknown));
 }
 
 TEST(EgoMotion, ASteadyMotionDoesNotBreakOff) {

@@ -187,5 +187,20 @@ TEST(PointAdoption, WhatTheBackgroundPartsBelongsToAnother) {
   EXPECT_FALSE(takesBeside(true));
 }
 
+/// Points that joined a car although they lie on what drives five meters behind it.
+TEST(OtherBodies, PointsThatMoveApartFromMostAreDisowned) {
+  for (const double slower_mps : {0.0, 3.0}) {
+    CarWithPoints car;
+    car.object.points.clear();
+    for (const double y_m : {-0.6, -0.3, 0.0, 0.3, 0.6}) car.see({0, y_m, 0.3});
+    for (const double y_m : {-0.2, 0.0, 0.2}) car.see({-5, y_m, 0.3}).flow->velocity_mps.z() -= slower_mps;
+    for (const ScenePoint& p : car.scene.points)
+      car.object.points.push_back({p.point, Eigen::Vector3d::Zero(), 1e-4 * Eigen::Matrix3d::Identity()});
+    disownOtherBodies(car.object, car.scene);
+    EXPECT_EQ(car.object.points.size(), slower_mps > 0 ? 5U : 8U);
+    EXPECT_TRUE(car.object.find({0}));
+  }
+}
+
 }  // namespace
 }  // namespace motorcade
