@@ -18,6 +18,7 @@ enum class MotionVerdict {
   kOnRoad,   // nearly all of its points lie on the road, as a shadow or what a wet road mirrors does
   kWithin,   // nearly all of its points lie within an object that was known before
   kBehind,   // what rests around it in the image is nearer, as the surface is in which something is mirrored
+  kRepeats,  // the texture around it repeats, so that points at rest may seem to move
   kNothing,  // no point of the object has a surface around it that tells, although motion and rest are well apart
   kUntold    // motion and rest cannot be told apart
 };

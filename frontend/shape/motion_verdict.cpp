@@ -107,6 +107,25 @@ bool lieWithinAnother(const std::vector<PlacedPoint>& points, const OtherBodies&
                            [&](const Eigen::Vector3d& p_cam) { return others.around(p_cam, kMargin_m) != nullptr; });
 }
 
+/// Surroundings of an object's points in the image, and the range of these points' depths.
+struct Surroundings {
+  Eigen::AlignedBox2d box_px;
+  double nearest_m, middle_m, farthest_m;
+};
+
+Surroundings surroundingsOf(const std::vector<PlacedPoint>& points, const StereoCamera& camera) {
+  Eigen::AlignedBox2d points_px;
+  std::vector<double> depths_m;
+  for (const PlacedPoint& point : points) {
+    points_px.extend(point.measured->uvd_px.head<2>().cast<double>());
+    depths_m.push_back(point.p_cam.z());
+  }
+  std::ranges::sort(depths_m);
+  const double middle_m = depths_m[depths_m.size() / 2];
+  const Eigen::Vector2d reach_px = Eigen::Vector2d::Constant(camera.fx_px * kReach_m / middle_m);
+  return {{points_px.min() - reach_px, points_px.max() + reach_px}, depths_m.front(), middle_m, depths_m.back()};
+}
+
 /// Points at rest to one side of others in the image, and how many of them are nearer.
 struct RestBeside {
   int all = 0, nearer = 0;
@@ -115,33 +134,39 @@ struct RestBeside {
 /// True when what rests to both sides of the object's points in the image is nearer than these. A body hides what is
 /// behind it; a mirror image lies behind the surface that mirrors it. A body that goes behind something has this to one
 /// side.
-bool liesBehindRest(const std::vector<PlacedPoint>& points, const ObjectView& view, const StereoCamera& camera) {
+bool liesBehindRest(const Surroundings& around, const ObjectView& view, const StereoCamera& camera) {
   constexpr double kLeastDepth_m = 1;     // a body's own depth does not count
   constexpr double kSigmas = 3;           // standard deviations of a disparity
   constexpr int kLeast = 5, kBeside = 2;  // points at rest in all, and to each side
-  if (points.empty()) return false;
-  Eigen::AlignedBox2d around_px;
-  std::vector<double> depths_m;
-  for (const PlacedPoint& point : points) {
-    around_px.extend(point.measured->uvd_px.head<2>().cast<double>());
-    depths_m.push_back(point.p_cam.z());
-  }
-  const auto middle = depths_m.begin() + std::ssize(depths_m) / 2;
-  std::ranges::nth_element(depths_m, middle);
-  if (*middle <= kLeastDepth_m) return false;
-  const Eigen::Vector2d reach_px = Eigen::Vector2d::Constant(camera.fx_px * kReach_m / *middle);
-  around_px = {around_px.min() - reach_px, around_px.max() + reach_px};
-  const double before_px = camera.fx_px * camera.baseline_m / (*middle - kLeastDepth_m);
+  if (around.middle_m <= kLeastDepth_m) return false;
+  const double before_px = camera.fx_px * camera.baseline_m / (around.middle_m - kLeastDepth_m);
   RestBeside left, right;
   for (const ScenePoint& p : view.scene) {
-    if (p.label != PointLabel::kStatic || !p.flow || !around_px.contains(p.uvd_px.head<2>())) continue;
-    RestBeside& side = p.uvd_px.x() < around_px.center().x() ? left : right;
+    if (p.label != PointLabel::kStatic || !p.flow || !around.box_px.contains(p.uvd_px.head<2>())) continue;
+    RestBeside& side = p.uvd_px.x() < around.box_px.center().x() ? left : right;
     ++side.all, side.nearer += p.uvd_px.z() > before_px + kSigmas * p.sigma_px.z();
   }
   const auto hides = [](const RestBeside& side) {
     return side.nearer >= std::max<double>(kBeside, kNearlyAll * side.all);
   };
   return hides(left) && hides(right) && left.nearer + right.nearer >= kLeast;
+}
+
+/// True when texture repeats around the object's points, at their depth: patches there are also found where they would
+/// be at rest. Some points of a fence agree on a motion by bars that were taken for one another.
+bool liesAmidRepeats(const Surroundings& around, const ObjectView& view, const StereoCamera& camera) {
+  constexpr double kDeep_m = 1, kSigmas = 2;  // beyond the object's points, and of a depth
+  constexpr double kShare = 0.4;
+  constexpr int kLeast = 3;
+  int all = 0, ambiguous = 0;
+  for (const ScenePoint& p : view.scene) {
+    if (p.label == PointLabel::kGround || !around.box_px.contains(p.uvd_px.head<2>())) continue;
+    const double z_m = camera.fx_px * camera.baseline_m / p.uvd_px.z();
+    const double slack_m = kDeep_m + kSigmas * z_m * p.sigma_px.z() / p.uvd_px.z();
+    if (z_m < around.nearest_m - slack_m || z_m > around.farthest_m + slack_m) continue;
+    ++all, ambiguous += p.ambiguous;
+  }
+  return all >= kLeast && ambiguous >= kShare * all;
 }
 
 /// Points around which the image moved with the body, and around which it rested, of those that were asked.
@@ -194,7 +219,11 @@ MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDispar
   if (view.small && points.empty() && observed->patches.empty()) return MotionVerdict::kUntold;
   const bool few = view.small && std::ssize(points) < kEnough;
   if (few) std::ranges::move(placed(observed->patches, view, camera), std::back_inserter(points));
-  if (liesBehindRest(points, view, camera)) return MotionVerdict::kBehind;
+  if (!points.empty()) {
+    const Surroundings around = surroundingsOf(points, camera);
+    if (liesBehindRest(around, view, camera)) return MotionVerdict::kBehind;
+    if (liesAmidRepeats(around, view, camera)) return MotionVerdict::kRepeats;
+  }
   if (!disparities) return verdictOf({}, well_apart);
   const Votes votes = votesOf(points, *disparities, view, others, camera);
   if (votes.rested > 0 && view.well_before->apart < view.width) return MotionVerdict::kUntold;

@@ -111,7 +111,7 @@ TEST(Existence, IsSettledByWhatIsSettledAlone) {
 
 TEST(Existence, GrowsWithWhatMovesAndFallsWithWhatRestsOrIsNotThere) {
   for (const MotionVerdict against : {MotionVerdict::kRested, MotionVerdict::kOnRoad, MotionVerdict::kWithin,
-                                      MotionVerdict::kBehind, MotionVerdict::kNothing}) {
+                                      MotionVerdict::kBehind, MotionVerdict::kRepeats, MotionVerdict::kNothing}) {
     Existence existence;
     existence.addSpeed(6, 1);
     addVerdicts(existence, 0, 5, MotionVerdict::kMoved);

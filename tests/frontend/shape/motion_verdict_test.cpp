@@ -62,6 +62,10 @@ class Surface {
                        .flow = none});
     view_.scene = rest_;
   }
+  /// The first of these points have a second match.
+  void makeAmbiguous(int points) {
+    for (int i = 0; i < points; ++i) rest_[i].ambiguous = true;
+  }
   void lowerTo(double camera_height_m) { view_.ground.height_m = camera_height_m; }
   /// Follows none of the points of what may be a person any more, but finds them as patches.
   void followByPatches() {
@@ -249,6 +253,20 @@ TEST(MotionVerdict, ABodyGoesBehindWhatIsNearerToOneSide) {
   EXPECT_EQ(left.verdict(moved), MotionVerdict::kMoved);
   EXPECT_EQ(right.verdict(moved), MotionVerdict::kMoved);
   EXPECT_EQ(both.verdict(moved), MotionVerdict::kBehind);
+}
+
+/// A few bars of a fence were taken for one another, so that they seem to move.
+TEST(MotionVerdict, TellsTextureThatRepeatsByThePointsAroundIt) {
+  const auto verdict_of = [](int points, int ambiguous, double nearer_m) {
+    Surface surface;
+    surface.addRest(points, nearer_m);
+    surface.makeAmbiguous(ambiguous);
+    return surface.verdict(moved);
+  };
+  EXPECT_EQ(verdict_of(10, 4, 0), MotionVerdict::kRepeats);
+  EXPECT_EQ(verdict_of(10, 3, 0), MotionVerdict::kMoved);
+  EXPECT_EQ(verdict_of(2, 2, 0), MotionVerdict::kMoved) << "two points are no texture";
+  EXPECT_EQ(verdict_of(10, 10, -4), MotionVerdict::kMoved) << "a fence behind the body";
 }
 
 TEST(MotionVerdict, RestContradictsAnEstimateThatSurelyGoesOn) {
