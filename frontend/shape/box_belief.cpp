@@ -47,17 +47,14 @@ struct Posterior {
 
 Posterior posteriorOf(const SizedKind& kind, const FacePrior& prior, const FaceInformation& evidence,
                       const BodyTraits& traits) {
-  FaceInformation both = prior.faces;
-  both.add(evidence);
-  const Eigen::LLT<Matrix6d> llt(both.H);
+  const FacePosterior of_faces = posteriorFaces(prior.faces, evidence);
   Posterior posterior;
-  posterior.estimate.faces = llt.solve(both.b);
-  posterior.estimate.covariance = inverse(llt);
+  posterior.estimate.faces = of_faces.faces;
+  posterior.estimate.covariance = of_faces.covariance;
   posterior.estimate.kind = kind.kind;
-  const double misfit = both.c - both.b.dot(posterior.estimate.faces);
   const double too_fast = std::max(0.0, traits.speed_mps - kind.top_speed_mps) / kSpeedSlack_mps;
-  posterior.log_evidence = logarithm(kind.share) - 0.5 * misfit - 0.5 * too_fast * too_fast -
-                           0.5 * misfitOf(kind.size, traits) + 0.5 * (prior.log_determinant - logDeterminant(llt));
+  posterior.log_evidence = logarithm(kind.share) - 0.5 * of_faces.misfit - 0.5 * too_fast * too_fast -
+                           0.5 * misfitOf(kind.size, traits) + 0.5 * (prior.log_determinant - of_faces.log_determinant);
   return posterior;
 }
 
@@ -70,16 +67,52 @@ void FaceInformation::add(const Vector6d& row, double value, double sigma) {
   c += weight * value * value;
 }
 
+void FaceInformation::addReach(int face, double at, double sigma) {
+  reach_weight[face] += 1 / (sigma * sigma);
+  reach_sum[face] += at / (sigma * sigma);
+}
+
 void FaceInformation::add(const FaceInformation& more, double weight) {
   H += weight * more.H;
   b += weight * more.b;
   c += weight * more.c;
+  reach_weight += weight * more.reach_weight;
+  reach_sum += weight * more.reach_sum;
 }
 
 FaceInformation FaceInformation::shifted(const Eigen::Vector3d& shift) const {
   Vector6d by;
   by << shift.x(), shift.x(), shift.y(), shift.y(), shift.z(), shift.z();
-  return {.H = H, .b = b + H * by, .c = c + 2 * b.dot(by) + by.dot(H * by)};
+  return {.H = H,
+          .b = b + H * by,
+          .c = c + 2 * b.dot(by) + by.dot(H * by),
+          .reach_weight = reach_weight,
+          .reach_sum = reach_sum + reach_weight.cwiseProduct(by)};
+}
+
+FacePosterior posteriorFaces(const FaceInformation& prior, const FaceInformation& evidence) {
+  constexpr int kRounds = 3;  // a reach may push another face
+  FaceInformation all = prior;
+  all.add(evidence);
+  Eigen::LLT<Matrix6d> llt(all.H);
+  FacePosterior posterior{.faces = llt.solve(all.b), .covariance = {}, .misfit = 0, .log_determinant = 0};
+  std::array<bool, 6> counts{};
+  for (int round = 0; round < kRounds; ++round) {
+    bool changed = false;
+    for (int face = 0; face < 6; ++face) {
+      const double weight = all.reach_weight[face], sum = all.reach_sum[face];
+      if (counts[face] || weight <= 0 || outward(face) * (sum / weight - posterior.faces[face]) <= 0) continue;
+      all.H(face, face) += weight, all.b[face] += sum, all.c += sum * sum / weight;
+      counts[face] = changed = true;
+    }
+    if (!changed) break;
+    llt.compute(all.H);
+    posterior.faces = llt.solve(all.b);
+  }
+  posterior.covariance = inverse(llt);
+  posterior.misfit = all.c - all.b.dot(posterior.faces);
+  posterior.log_determinant = logDeterminant(llt);
+  return posterior;
 }
 
 ObjectBox BoxEstimate::box() const {

@@ -12,18 +12,35 @@ namespace motorcade {
 using BoxFaces = Vector6d;
 enum Face { kRear, kFront, kRight, kLeft, kBottom, kTop };
 
-/// Information on the faces, as a quadratic in them: faces^T H faces - 2 b^T faces + c.
+/// Sign of a face's outward direction: toward the greater coordinates or the lesser.
+inline double outward(int face) { return face % 2 == 1 ? 1 : -1; }
+
+/// Information on the faces, as a quadratic in them: faces^T H faces - 2 b^T faces + c. Parts of the body that were
+/// seen say besides that a face lies at their place or beyond (its reach); of several the weighted mean counts.
 struct FaceInformation {
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
   double c = 0;
+  Vector6d reach_weight = Vector6d::Zero(), reach_sum = Vector6d::Zero();  // 1/m^2, and weighted places
 
   /// Adds one measurement: row . faces = value, with a standard deviation.
   void add(const Vector6d& row, double value, double sigma);
+  /// Adds that a face lies at a place or beyond.
+  void addReach(int face, double at, double sigma);
   void add(const FaceInformation& more, double weight = 1);
   /// The same information in a body frame whose origin lies by `-shift` in this one.
   FaceInformation shifted(const Eigen::Vector3d& shift) const;
 };
+
+/// A Gaussian of the faces.
+struct FacePosterior {
+  BoxFaces faces;
+  Matrix6d covariance;
+  double misfit, log_determinant;  // of the information
+};
+/// Adds evidence to a prior. A reach counts where the face would fall short of it, and never draws a face back: how far
+/// a body was seen does not tell where it ends.
+FacePosterior posteriorFaces(const FaceInformation& prior, const FaceInformation& evidence);
 
 /// Traits of a body that its followed points tell.
 struct BodyTraits {

@@ -27,9 +27,6 @@ constexpr std::size_t kLeastSharp = 30;
 constexpr double kGoesOnSigmas = 2;  // by which a side goes on beyond the sharp part of it
 constexpr int kEdge = 3;             // cells from the window's edge, where the window cuts the outline
 
-/// Sign of a face's outward direction: toward the greater coordinates or the lesser.
-double outward(int face) { return face % 2 == 1 ? 1 : -1; }
-
 /// A point of the surface, with its noise along the ray.
 struct Sample {
   Eigen::Vector3d p_body;
@@ -113,7 +110,7 @@ void FaceMeasurement::addPoints() {
 
 /// Adds that a face lies at `at` or beyond.
 void FaceMeasurement::reachTo(int face, double at, double sigma_m) {
-  if (outward(face) * (at - view_.box.faces[face]) > 0) information_.add(Vector6d::Unit(face), at, sigma_m);
+  if (outward(face) * (at - view_.box.faces[face]) > 0) information_.addReach(face, at, sigma_m);
 }
 
 void FaceMeasurement::addSurfaces() {

@@ -137,6 +137,11 @@ Blurred blurred(const FaceInformation& evidence, const BoxFaces& sigma_m) {
   result.evidence.H.diagonal() += of_shift;
   result.evidence.b = of_shift.cwiseProduct(shift);
   result.evidence.c = evidence.c - evidence.b.dot(shift);
+  for (int face = 0; face < 6; ++face) {
+    const double share = 1 / (1 + evidence.reach_weight[face] * sigma_m[face] * sigma_m[face]);
+    result.evidence.reach_weight[face] = share * evidence.reach_weight[face];
+    result.evidence.reach_sum[face] = share * evidence.reach_sum[face];
+  }
   result.log_scale = -0.5 * logDeterminant(llt) - logarithm(sigma_m.prod());
   return result;
 }
@@ -152,12 +157,10 @@ using Components = std::array<Component, kKindsOfStreets.size() * kSharedErrors.
 
 /// Component of a kind; its weight is without the share of the kind and the density of the speed.
 Component componentOf(ObjectKind kind, const FacePrior& prior, const Blurred& seen) {
-  FaceInformation both = prior.faces;
-  both.add(seen.evidence);
-  const Eigen::LLT<Matrix6d> llt(both.H);
-  Component component{.kind = kind, .faces = llt.solve(both.b), .covariance = inverse(llt)};
-  const double misfit = both.c - both.b.dot(component.faces);
-  component.log_weight = seen.log_scale - 0.5 * misfit + 0.5 * (prior.log_determinant - logDeterminant(llt));
+  const FacePosterior posterior = posteriorFaces(prior.faces, seen.evidence);
+  Component component{.kind = kind, .faces = posterior.faces, .covariance = posterior.covariance};
+  component.log_weight =
+      seen.log_scale - 0.5 * posterior.misfit + 0.5 * (prior.log_determinant - posterior.log_determinant);
   return component;
 }
 

@@ -1,5 +1,6 @@
 #include "frontend/shape/box_belief.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -58,6 +59,30 @@ TEST(BoxBelief, HiddenFacesComeFromTheKindAndGrowSureWhenTheyAreSeen) {
   EXPECT_LT(found.size_sigma_m.x(), 0.2);
 }
 
+/// The rear of a bus, of whose flank some meters were seen now and then.
+TEST(BoxBelief, AReachExtendsABodyButDoesNotHoldIt) {
+  const auto length_of = [](double reach_m) {
+    FaceInformation rear = seen({11, 2.5, 3.3}, 0.1);
+    rear.H.row(kFront).setZero(), rear.H.col(kFront).setZero(), rear.b[kFront] = 0;
+    rear.c -= std::pow(StreetByHand::faces({11, 2.5, 3.3})[kFront] / 0.1, 2);
+    if (reach_m > 0) rear.addReach(kFront, rear.b[kRear] / rear.H(kRear, kRear) + reach_m, 0.05);
+    return estimateBox(rear, {10}).box().size_m.x();
+  };
+  const double unseen_m = length_of(0);
+  EXPECT_GT(unseen_m, 7);
+  EXPECT_NEAR(length_of(3), unseen_m, 1e-9);
+  EXPECT_NEAR(length_of(14), 14, 0.1);
+}
+
+TEST(BoxBelief, AReachThatPushesOneFaceMayPushAnother) {
+  FaceInformation ends;
+  ends.addReach(kFront, 6, 0.05);
+  ends.addReach(kRear, 1, 0.05);  // within the body while it is around its origin
+  const BoxEstimate estimate = estimateBox(ends, {10}, ObjectKind::kPedestrian);
+  EXPECT_NEAR(estimate.faces[kFront], 6, 0.3);
+  EXPECT_LT(estimate.faces[kRear], 1.3);
+}
+
 TEST(BoxBelief, AKnownKindClosesWhatIsHidden) {
   FaceInformation rear;
   for (const Face face : {kRear, kBottom}) rear.add(Vector6d::Unit(face), -0.8, 0.1);
@@ -93,6 +118,11 @@ TEST(FaceInformation, MovesWithTheBodyFrame) {
   EXPECT_LT((moved.H - expected.H).norm(), 1e-9);
   EXPECT_LT((moved.b - expected.b).norm(), 1e-9);
   EXPECT_NEAR(moved.c, expected.c, 1e-9);
+
+  FaceInformation reach, beyond;
+  reach.addReach(kLeft, 0.9, 0.2), beyond.addReach(kLeft, 0.9 + shift.y(), 0.2);
+  EXPECT_EQ(reach.shifted(shift).reach_weight, beyond.reach_weight);
+  EXPECT_LT((reach.shifted(shift).reach_sum - beyond.reach_sum).norm(), 1e-9);
 }
 
 TEST(BoxBelief, VolumesReachOverWhatIsKnownOfTheBody) {

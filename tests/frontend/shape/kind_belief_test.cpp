@@ -1,5 +1,7 @@
 #include "frontend/shape/kind_belief.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "tests/frontend/shape/street_by_hand.hpp"
@@ -30,6 +32,18 @@ TEST(KindBelief, IsSureOfUsualSizesAndSpeeds) {
   expectKind(ObjectKind::kLargeVehicle, {11, 2.5, 3.3}, 15);
   expectKind(ObjectKind::kTwoWheeler, {1.8, 0.6, 1.7}, 5);
   expectKind(ObjectKind::kPedestrian, {0.8, 0.6, 1.75}, 1.3);
+}
+
+TEST(KindBelief, AReachSpeaksAgainstWhatIsShorterAlone) {
+  const auto probability_of_car = [](double reach_m) {
+    FaceInformation seen;
+    if (reach_m > 0) seen.addReach(kFront, 0.5 * reach_m, kFine_m), seen.addReach(kRear, -0.5 * reach_m, kFine_m);
+    const ObjectBox box = believedBox(seen, {3});
+    return std::pair(box.kind, box.kind_probability);
+  };
+  EXPECT_EQ(probability_of_car(0.3), probability_of_car(0)) << "all kinds are longer";
+  EXPECT_EQ(probability_of_car(4).first, ObjectKind::kCar);
+  EXPECT_GT(probability_of_car(4).second, probability_of_car(0).second);
 }
 
 TEST(KindBelief, SpeedTellsWalkersFromRiders) {
