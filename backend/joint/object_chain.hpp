@@ -22,8 +22,8 @@ class ObjectChain {
   /// Adds a further pose: where it was seen while the track has no gauge yet, then where the motion of the record
   /// before puts it.
   void extend(const ObjectTrack& track, const ObjectRecord& before, ObjectRecord& record);
-  /// Chooses the gauge of the body's frame: the oldest pose from which on all frames measured points of the body. Those
-  /// before it were found by looking back, and may be far off.
+  /// Chooses the gauge of the body's frame: the oldest pose from which on all records have measured points of the body.
+  /// Those before it were found by looking back, and may be far off.
   void hold(ObjectTrack& track);
   /// Renews an object's motion from the camera's, which is known better when its landmarks have ended.
   void renewMotion(ObjectTrack& track, FrameId newest);

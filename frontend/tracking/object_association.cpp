@@ -15,8 +15,8 @@ constexpr double kVelocitySpread_mps = 1.0;
 constexpr double kDepthNoise = 0.02;         // of the centroid, over its depth: the errors that its points share
 constexpr double kSharedPointsBonus = 20.0;  // cost taken off when all points of the component are the object's
                                              // already: beyond the gate, as points outweigh any distance within it
-constexpr double kClaimedShare = 0.3;        // a component with this share of an object's points belongs to it whatever
-                                             // the distance
+constexpr double kClaimedShare = 0.3;        // a component of whose points this share is an object's belongs to it,
+                                             // whatever the distance
 constexpr double kForbidden = 1e6;           // cost of a pair that must not match
 
 /// Projects world coordinates onto the road: two axes across its normal.
