@@ -71,6 +71,7 @@ class FaceMeasurement {
   void addSurfacePoint(const SurfacePoint& point, std::array<Surface, 6>& surfaces);
   void addExtent();
   void reachTo(int face, double at, double sigma_m);
+  bool isFlankInView() const;
   void addBounds();
   bool isCut(int column, int step) const;
   /// One side of the outline; where it is cut, the object reaches at least so far.
@@ -108,9 +109,18 @@ void FaceMeasurement::addPoints() {
   }
 }
 
-/// Adds that a face lies at `at` or beyond.
+/// Adds that a face lies at `at` or beyond. Rear and front lie there if the flank is in view: it was seen to end there.
 void FaceMeasurement::reachTo(int face, double at, double sigma_m) {
-  if (outward(face) * (at - view_.box.faces[face]) > 0) information_.addReach(face, at, sigma_m);
+  if (outward(face) * (at - view_.box.faces[face]) <= 0) return;
+  if (face <= kFront && isFlankInView())
+    information_.add(Vector6d::Unit(face), at, sigma_m);
+  else
+    information_.addReach(face, at, sigma_m);
+}
+
+/// True when the camera is to a side of the cuboid, so that its end does not hide how long it is.
+bool FaceMeasurement::isFlankInView() const {
+  return origin_.y() < view_.box.faces[kRight] || origin_.y() > view_.box.faces[kLeft];
 }
 
 void FaceMeasurement::addSurfaces() {

@@ -75,6 +75,24 @@ TEST(FaceMeasurement, HoldsTheFollowedPoints) {
   EXPECT_GT(front(), 4);
 }
 
+/// Points that reach farther than is believed end where the body does only if one sees its flank.
+TEST(FaceMeasurement, PointsTellWhereAFlankInViewEnds) {
+  const auto look_from = [](double aside_m) {
+    const SE3 T_cam_body = StreetByHand::standingAt(aside_m, 14);
+    const StreetByHand street({{T_cam_body, StreetByHand::faces(kMeasuredCar_m)}});
+    ObjectView view{.T_cam_body = T_cam_body, .box = estimateBox({}, {10}), .ground = {}, .disparity_offset_px = 0};
+    view.points = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(5, 0.5, 1));
+    const Outline nothing{.window = kFaceWindow, .inside = std::vector<std::uint8_t>(kFaceWindow.area(), 0)};
+    return measuredFaces(street.disparities(kFaceWindow, 1), nothing, view);
+  };
+  const FaceInformation behind = look_from(0), beside = look_from(-3);
+  EXPECT_GT(behind.reach_weight[kFront], 0);
+  EXPECT_EQ(behind.H(kFront, kFront), 0);
+  EXPECT_EQ(beside.reach_weight[kFront], 0);
+  EXPECT_GT(beside.H(kFront, kFront), 0);
+  for (const FaceInformation& look : {behind, beside}) EXPECT_GT(look.reach_weight[kRight], 0);
+}
+
 TEST(FaceMeasurement, AWrongBeliefOfTheRearGivesWayToTheSideThatIsSeenBehindIt) {
   // A car that overtakes: its side fills the view, and its rear is believed to be two meters ahead of where it is.
   const SE3 T_cam_body = StreetByHand::standingAt(-3.3, 9);
