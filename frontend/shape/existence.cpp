@@ -29,15 +29,15 @@ struct VerdictShare {
   double of_body, of_nothing;
 };
 /// Shares of each MotionVerdict, in its order.
-constexpr std::array<VerdictShare, 9> kShares{{{0.5, 0.04},
-                                               {0.2, 0.1},
-                                               {0.06, 0.07},
-                                               {0.03, 0.17},
-                                               {0.01, 0.06},
-                                               {0.01, 0.07},
-                                               {0.002, 0.04},
-                                               {0.0025, 0.1},
-                                               {0.17, 0.4}}};
+constexpr std::array<VerdictShare, 9> kShares{{{0.5, 0.04},    // moved
+                                               {0.2, 0.1},     // hardly
+                                               {0.06, 0.07},   // mixed
+                                               {0.03, 0.17},   // rested
+                                               {0.01, 0.06},   // on the road
+                                               {0.01, 0.07},   // within
+                                               {0.002, 0.04},  // behind
+                                               {0.0025, 0.1},  // repeats
+                                               {0.17, 0.4}}};  // nothing
 
 /// Most points of a track that is never put to the test: three points agree with some motion, whatever they do.
 constexpr std::size_t kUntested = 3;

@@ -39,9 +39,9 @@ bool restsDespiteEstimate(const ObjectEstimate& object, double sigma_mps);
 /// Each point asks the surface around it, densely. That the point itself was followed does not count: a wrong match on
 /// what repeats was followed, too. Where a point may lie on an object that was known before, what goes along with that
 /// one stands in for what rests. A person with hardly a followed point is asked by its patches, of which most must
-/// tell. What rests around it and is nearer tells of a mirror image, and
-/// texture that repeats of wrong matches. `observed` is null where the object was not
-/// measured, `disparities` where no outline of it was found; the frame compared with is `view.well_before`.
+/// tell. What rests around it and is nearer tells of a mirror image, and texture that repeats tells of wrong matches.
+/// `observed` is null where the object was not measured, `disparities` where no outline of it was found; the frame
+/// compared with is `view.well_before`.
 MotionVerdict motionVerdict(const ObjectObservation* observed, const LevelDisparities* disparities,
                             const ObjectView& view, const StereoCamera& camera);
 
