@@ -20,8 +20,9 @@ std::vector<std::vector<int>> cutDelaunayComponents(std::span<const Eigen::Vecto
 
 /// Splits the scene into moving, static and unknown parts: connected components of the Delaunay graph over the image
 /// points. An edge is cut where the scene flow of its ends differs by more than their uncertainty allows, or where they
-/// are too far apart to be one vehicle. Points that surely move are split once more where they fell to a static part: a
-/// walker's velocity differs from that of the house behind by little more than the tolerance. Stateless.
+/// are too far apart to be one vehicle. A moving component is split again where its parts do not keep their distance
+/// (rigidParts). Points that surely move are split once more where they fell to a static part: a walker's velocity
+/// differs from that of the house behind by little more than the tolerance. Stateless.
 class MotionSegmenter {
  public:
   struct Params {

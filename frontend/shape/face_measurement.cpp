@@ -109,7 +109,7 @@ void FaceMeasurement::addPoints() {
   }
 }
 
-/// Adds that a face lies at `at` or beyond. Rear and front lie there if the flank is in view: it was seen to end there.
+/// Adds that a face lies at `at` or beyond. Where the flank is in view, it was seen to end: rear or front lies there.
 void FaceMeasurement::reachTo(int face, double at, double sigma_m) {
   if (outward(face) * (at - view_.box.faces[face]) <= 0) return;
   if (face <= kFront && isFlankInView())
