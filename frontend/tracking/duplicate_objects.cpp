@@ -46,6 +46,19 @@ Eigen::Array3d slackBetween_m(const TrackedObject& older, const TrackedObject& y
   return (kSigmas * covariance.diagonal().array().sqrt()).min(kMaxSlack_m);
 }
 
+/// Box around an object's points, moved by `T`. Where none is left, it is where their middle was.
+Eigen::AlignedBox3d placeOf(const TrackedObject& object, const SE3& T) {
+  Eigen::AlignedBox3d box = object.core(T);
+  if (box.isEmpty()) box.extend(T * object.last_middle_body);
+  return box;
+}
+
+/// True for what may be two people of whom one walks. The other may stand, or its speed may be wrong for some frames.
+bool arePeople(const TrackedObject& one, const TrackedObject& other, const StereoCamera& camera) {
+  const bool walks = mayBeWalking(one, camera) || mayBeWalking(other, camera);
+  return walks && mayBeOnFoot(one) && mayBeOnFoot(other);
+}
+
 bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, const SeeThrough& see_through,
                    const StereoCamera& camera) {
   // A younger one that was observed for longer than the older one is lost is another vehicle.
@@ -55,11 +68,10 @@ bool areDuplicates(const TrackedObject& older, const TrackedObject& younger, con
       (older.velocityAt_mps(T_older_younger.translation()) - younger.kinematics.velocityWorld_mps()).norm();
   const double sigma_mps = hypotenuse(older.kinematics.speedSigma_mps(), younger.kinematics.speedSigma_mps());
   if (difference_mps >= kMaxSpeedDifference_mps + kSigmas * sigma_mps) return false;
-  const Eigen::AlignedBox3d own = older.core(SE3{}), other = younger.core(T_older_younger);
+  const Eigen::AlignedBox3d own = placeOf(older, SE3{}), other = placeOf(younger, T_older_younger);
   const Eigen::Array3d slack_m = slackBetween_m(older, younger, T_older_younger);
+  if (arePeople(older, younger, camera)) return kPerson.holds(own.merged(other), slack_m.min(kMaxSlackOfPerson_m));
   // Not where the younger is tall: a car before a lorry would end in it.
-  if (mayBeWalking(older, camera) && mayBeWalking(younger, camera))
-    return kPerson.holds(own.merged(other), slack_m.min(kMaxSlackOfPerson_m));
   const VehicleSize& size = isTall(own) ? kTallVehicle : kOrdinaryVehicle;
   if (size.holds(own.merged(other), slack_m)) return true;
   if (difference_mps >= kMaxSpeedDifference_mps) return false;

@@ -11,6 +11,10 @@ bool mayBeSmall(const TrackedObject& object) {
   return hypotenuse(size_m.x(), size_m.y()) < kLongest_m;
 }
 
+bool mayBeOnFoot(const TrackedObject& object) {
+  return mayBeSmall(object) && (object.born_slow || object.kinematics.speed_mps() <= kFastestWalk_mps);
+}
+
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera) {
   constexpr double kBehind_m = 0.5, kSigma_px = 0.3;  // of a patch's disparity
   if (speed_mps < kSlowestWalk_mps || speed_mps > kFastestWalk_mps) return false;

@@ -16,10 +16,13 @@ inline constexpr double kSlowestWalk_mps = 0.5;  // what is slower cannot be tol
 /// points lie within what one takes up of the road. A vehicle of which little was seen yet may pass as well.
 bool mayBeSmall(const TrackedObject& object);
 
+/// True when an object may be a person on foot: it is small, and as slow as one now or was so when it was spawned.
+bool mayBeOnFoot(const TrackedObject& object);
+
 /// True when a speed is that of a walk, at a depth at which patches are followed.
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera);
 
-/// True when an object may be a person on foot, who is followed by patches on the trunk: corners are few on clothes,
+/// True when an object may be a person who walks, who is followed by patches on the trunk: corners are few on clothes,
 /// and most of them are on limbs. It must be so near that the disparity tells a patch on the body from what lies half a
 /// meter behind. It must move: what stands cannot be told from what it stands before.
 bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera);

@@ -99,6 +99,44 @@ TEST(DuplicateObjects, TwoWhoWalkAreOneWithinThePlaceOfAPerson) {
   EXPECT_TRUE(areOne(vehicle, piece(11.5, 8)));
 }
 
+/// One who stands has no speed that tells it from a car in a queue.
+TEST(DuplicateObjects, WhoWalksPastOneWhoStandsIsAnother) {
+  const Seen walks{.track = 1, .begin_m = 10, .end_m = 10.4, .speed_mps = 1.4, .width_m = 0.4};
+  Seen stands{.track = 2, .begin_m = 13, .end_m = 13.4, .speed_mps = 0.1, .width_m = 0.4};
+  EXPECT_FALSE(areOne(walks, stands));
+  EXPECT_FALSE(areOne(stands, walks));
+  stands.begin_m = 10.5, stands.end_m = 10.9;
+  EXPECT_TRUE(areOne(walks, stands)) << "an arm";
+}
+
+/// Points on a limb give a walker too high a speed for some frames.
+TEST(DuplicateObjects, WhoWasBornAsAWalkerIsOneAtAnySpeedOfASmallBody) {
+  const auto areOneAt = [](bool born_slow) {
+    const auto at = [](std::int64_t track, double begin_m, double speed_mps) {
+      return objectOn(
+          {.track = track, .begin_m = begin_m, .end_m = begin_m + 0.4, .speed_mps = speed_mps, .width_m = 0.4});
+    };
+    std::vector<TrackedObject> objects{at(1, 10, 1.9), at(2, 13, 3.2)};
+    objects[1].born_slow = born_slow;
+    mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
+    return objects[1].life.phase() == Phase::kEnded;
+  };
+  EXPECT_FALSE(areOneAt(true));
+  EXPECT_TRUE(areOneAt(false)) << "what rides may be a vehicle's part";
+}
+
+TEST(DuplicateObjects, WithoutPointsIsWhereItsPointsWere) {
+  const auto areOneAt = [](double ahead_m) {
+    std::vector<TrackedObject> objects{objectOn({1, 10, 12}), objectOn({2, ahead_m - 1, ahead_m + 1})};
+    objects[0].last_middle_body = objects[0].middle();
+    objects[0].points.clear();
+    mergeDuplicates(objects, SeeThrough(SceneMotion{}, test::kRig), test::kRig);
+    return objects[1].life.phase() == Phase::kEnded;
+  };
+  EXPECT_TRUE(areOneAt(12));
+  EXPECT_FALSE(areOneAt(40));
+}
+
 TEST(DuplicateObjects, WhatIsHigherThanACarMayBeLonger) {
   constexpr double kVan_m = 2.2;
   EXPECT_FALSE(areOne({1, 10, 12}, {2, 17, 18}));

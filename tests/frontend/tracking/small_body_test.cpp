@@ -45,6 +45,15 @@ TEST(SmallBody, OfAWalkerNeitherStandsNorRides) {
   EXPECT_FALSE(mayBeWalking(objectOf(4, 1.7, 1.4), kRig));
 }
 
+TEST(SmallBody, MayStandOnFootOrHaveBeenSlowerAtItsBirth) {
+  EXPECT_TRUE(mayBeOnFoot(objectOf(0.8, 0.6, 0)));
+  EXPECT_FALSE(mayBeOnFoot(objectOf(4, 1.7, 0))) << "a parked car";
+  TrackedObject fast = objectOf(0.8, 0.6, kFastestWalk_mps + 1);
+  EXPECT_FALSE(mayBeOnFoot(fast));
+  fast.born_slow = true;
+  EXPECT_TRUE(mayBeOnFoot(fast));
+}
+
 TEST(SmallBody, OfAWalkerKeepsItsSpeedAndGoesToAnySide) {
   const ObjectKinematics::Params vehicle;
   for (const double speed_mps : {0.0, 1.4, kFastestWalk_mps - 0.1}) {
