@@ -59,15 +59,60 @@ RegionTemplate::RegionTemplate(const Image& image, const Eigen::Vector2d& middle
   if (!normalize(values_)) values_.clear();
 }
 
-double RegionTemplate::ncc(const Image& image, const Eigen::Vector2d& middle_px, double scale) const {
+namespace {
+
+/// Correlation of normalized values with those of `sample(i)`.
+template <class Sample>
+double correlation(const std::vector<float>& values, const Sample& sampled) {
   float sum = 0, energy = 0, product = 0;
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    const float value =
-        sample(image, middle_px.x() + scale * offsets_px_[i].x(), middle_px.y() + scale * offsets_px_[i].y());
-    sum += value, energy += value * value, product += value * values_[i];
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float value = sampled(i);
+    sum += value, energy += value * value, product += value * values[i];
   }
-  const float variance = energy - sum * sum / static_cast<float>(values_.size());
+  if (values.empty()) return 0;
+  const float variance = energy - sum * sum / static_cast<float>(values.size());
   return variance > 1 ? product / std::sqrt(variance) : 0;
+}
+
+/// A template's pixels around a place of an image. A shift by whole pixels leaves the weights of their neighbors.
+class ShiftedPixels {
+ public:
+  ShiftedPixels(const Image& image, const Eigen::Vector2d& middle_px, const std::vector<Eigen::Vector2f>& offsets_px,
+                double scale)
+      : image_(image), last_x_(image.width() - 2), last_y_(image.height() - 2) {
+    for (const Eigen::Vector2f& offset : offsets_px) {
+      const Eigen::Vector2d at_px = middle_px + scale * offset.cast<double>(), first_px = at_px.array().floor();
+      const Eigen::Vector2f share = (at_px - first_px).cast<float>();
+      pixels_.push_back({static_cast<int>(first_px.x()), static_cast<int>(first_px.y()), share.x(), share.y()});
+    }
+  }
+
+  float operator()(std::size_t i, int right_px, int down_px) const {
+    const Pixel& pixel = pixels_[i];
+    const int x = std::clamp(pixel.x + right_px, 0, last_x_), y = std::clamp(pixel.y + down_px, 0, last_y_);
+    const std::uint8_t *upper = image_.row(y) + x, *lower = image_.row(y + 1) + x;
+    const float above = static_cast<float>(upper[0]) + pixel.share_x * static_cast<float>(upper[1] - upper[0]);
+    const float below = static_cast<float>(lower[0]) + pixel.share_x * static_cast<float>(lower[1] - lower[0]);
+    return above + pixel.share_y * (below - above);
+  }
+
+ private:
+  struct Pixel {
+    int x, y;  // upper left of the four neighbors
+    float share_x, share_y;
+  };
+
+  const Image& image_;
+  int last_x_, last_y_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace
+
+double RegionTemplate::ncc(const Image& image, const Eigen::Vector2d& middle_px, double scale) const {
+  return correlation(values_, [&](std::size_t i) {
+    return sample(image, middle_px.x() + scale * offsets_px_[i].x(), middle_px.y() + scale * offsets_px_[i].y());
+  });
 }
 
 std::optional<RegionTemplate::Match> RegionTemplate::find(const Image& image, const Eigen::Vector2d& guess_px,
@@ -77,7 +122,8 @@ std::optional<RegionTemplate::Match> RegionTemplate::find(const Image& image, co
   constexpr double kLeastUnexplained = 0.01;  // of the correlation: sampling between pixels leaves as much
   constexpr int kPeak_px = 3;                 // from the best match, which scores high there as well
   if (values_.empty()) return std::nullopt;
-  const auto at = [&](int x, int y) { return ncc(image, guess_px + Eigen::Vector2d(x, y), scale); };
+  const ShiftedPixels shifted(image, guess_px, offsets_px_, scale);
+  const auto at = [&](int x, int y) { return correlation(values_, [&](std::size_t i) { return shifted(i, x, y); }); };
   Match match;
   int u = 0, v = 0;
   std::vector<double> scores;

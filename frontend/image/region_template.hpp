@@ -29,9 +29,10 @@ class RegionTemplate {
   std::optional<Match> find(const Image& image, const Eigen::Vector2d& guess_px, double scale,
                             const Eigen::Vector2i& radius_px) const;
 
- private:
+  /// Normalized cross-correlation with the image where the middle lies there.
   double ncc(const Image& image, const Eigen::Vector2d& middle_px, double scale) const;
 
+ private:
   std::vector<Eigen::Vector2f> offsets_px_;
   std::vector<float> values_;  // of zero mean and unit norm
 };

@@ -68,12 +68,13 @@ std::optional<TrackedObject> ObjectSpawner::walker(const SceneMotion& scene, con
 }
 
 /// Spawns an object; what it was seen to do before counts for its confirmation.
-TrackedObject ObjectSpawner::labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover,
-                                      const SE3& T_world_cam) {
+TrackedObject ObjectSpawner::region(const SceneMotion& scene, const RegionWalkers::Mover& mover,
+                                    const SE3& T_world_cam) {
   TrackedObject object = objectOf(scene, mover.component, T_world_cam);
   object.track = newTrack();
   object.spawned_at_world -= mover.duration_s * (T_world_cam.rotation() * mover.component.velocity_mps);
-  object.born_labelled = true;
+  object.born_as_region = true;
+  object.born_labelled = mover.labelled;
   for (int earlier = 1; earlier < mover.frames; ++earlier) object.life.observe();
   return object;
 }

@@ -6,8 +6,8 @@
 
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
-#include "frontend/tracking/labelled_walkers.hpp"
 #include "frontend/tracking/object_motion.hpp"
+#include "frontend/tracking/region_walkers.hpp"
 #include "frontend/tracking/tracked_object.hpp"
 
 namespace motorcade {
@@ -28,8 +28,8 @@ class ObjectSpawner {
   /// Spawns the person. Empty unless the patches around the points surely moved together since the frame before.
   std::optional<TrackedObject> walker(const SceneMotion& scene, const SceneMotion& before,
                                       const MotionComponent& component, const SE3& T_world_cam);
-  /// Spawns somebody whom an instance label shows.
-  TrackedObject labelled(const SceneMotion& scene, const LabelledWalkers::Mover& mover, const SE3& T_world_cam);
+  /// Spawns somebody who was found as a whole.
+  TrackedObject region(const SceneMotion& scene, const RegionWalkers::Mover& mover, const SE3& T_world_cam);
   /// An id that no object has had.
   TrackId newTrack() { return TrackId{next_track_++}; }
 

@@ -7,8 +7,8 @@
 #include "core/decompositions.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/duplicate_objects.hpp"
-#include "frontend/tracking/labelled_walkers.hpp"
 #include "frontend/tracking/object_association.hpp"
+#include "frontend/tracking/region_walkers.hpp"
 #include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
@@ -228,7 +228,7 @@ void ObjectTracker::matchComponents(const SceneMotion& scene) {
     std::ranges::move(spawn_(scene, scene.components[s], T_world_cam_, taken), std::back_inserter(objects_));
   }
   spawnWalkers(scene, object_of, taken);
-  spawnLabelled(scene, taken);
+  spawnRegions(scene, taken);
   dropFarthest();
 }
 
@@ -249,16 +249,16 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
   }
 }
 
-/// Spawns people whom instance labels show.
-void ObjectTracker::spawnLabelled(const SceneMotion& scene, const std::vector<bool>& taken) {
-  if (!scene.features || !scene.features->frame->inputs.instances) return;
-  const LabelledWalkers mover_of(look_back_, camera_);
-  for (const LabelledWalkers::Candidate& candidate : mover_of.candidates(scene, taken)) {
+/// Spawns people who are found as a whole, where instance labels or depth show them.
+void ObjectTracker::spawnRegions(const SceneMotion& scene, const std::vector<bool>& taken) {
+  if (!scene.features) return;
+  const RegionWalkers mover_of(look_back_, camera_);
+  for (const RegionWalkers::Candidate& candidate : mover_of.candidates(scene, taken, T_world_cam_)) {
     const auto mover = mover_of(candidate, scene, T_world_cam_);
     if (!mover) continue;
     const auto holds = [&](const TrackedObject& object) { return isAt(object, mover->component.centroid_cam); };
     if (std::ranges::any_of(objects_, holds)) continue;
-    objects_.push_back(spawn_.labelled(scene, *mover, T_world_cam_));
+    objects_.push_back(spawn_.region(scene, *mover, T_world_cam_));
   }
 }
 

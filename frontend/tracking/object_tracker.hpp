@@ -48,7 +48,7 @@ class ObjectTracker {
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchComponents(const SceneMotion& scene);
   void spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of, const std::vector<bool>& taken);
-  void spawnLabelled(const SceneMotion& scene, const std::vector<bool>& taken);
+  void spawnRegions(const SceneMotion& scene, const std::vector<bool>& taken);
   void dropFarthest();
   void reappear(TrackedObject& object, const MotionComponent& component) const;
   bool isOutOfReach(const TrackedObject& object) const;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "frontend/tracking/search_by_projection.hpp"
 #include "frontend/tracking/small_body.hpp"
 
 namespace motorcade {
@@ -47,6 +48,7 @@ std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels) {
 
 namespace {
 
+constexpr int kMostPixels = 200;         // of a region, evenly spread
 constexpr double kLongest_s = 0.6;       // that is looked back: about a step of a walk
 constexpr int kLeastSeen = 3;            // frames, with the newest
 constexpr double kLeastNcc = 0.5;        // of a match that is believed
@@ -54,11 +56,65 @@ constexpr double kLeastSigma_px = 0.15;  // of a body that bends and swings its 
 constexpr int kAround_px = 3;            // of what is predicted by a known velocity, and of a disparity
 constexpr int kMost_px = 24;             // that somebody moves between two frames
 
+/// Pixels between two corners, both included, that belong to a region, evenly spread.
+template <class Belongs>
+RegionPixels regionPixels(const Eigen::Vector2i& first_px, const Eigen::Vector2i& last_px, const Belongs& belongs,
+                          int most = kMostPixels) {
+  RegionPixels region;
+  const Eigen::Vector2i size_px = last_px - first_px + Eigen::Vector2i::Ones();
+  region.step_px = std::max(1, static_cast<int>(std::sqrt(size_px.prod() / most)));
+  for (int v = first_px.y(); v <= last_px.y(); v += region.step_px)
+    for (int u = first_px.x(); u <= last_px.x(); u += region.step_px)
+      if (belongs(u, v)) region.offsets_px.emplace_back(u, v);
+  for (const Eigen::Vector2f& p : region.offsets_px)
+    region.middle_px += p.cast<double>() / static_cast<double>(region.offsets_px.size());
+  for (Eigen::Vector2f& p : region.offsets_px) p -= region.middle_px.cast<float>();
+  return region;
+}
+
+/// Minus twice the logarithm of the likelihood of some pixels that correlate like this. Neighbors tell little more than
+/// one of them: a window of seven by seven pixels counts once.
+double misfit(const RegionPixels& region, double ncc) {
+  constexpr double kWindow_px = 7;
+  constexpr double kLeastUnexplained = 0.01;  // sampling between pixels leaves as much
+  const double side = region.step_px / kWindow_px;
+  return static_cast<double>(region.offsets_px.size()) * side * side * std::log(1 + kLeastUnexplained - ncc);
+}
+
 }  // namespace
 
-std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& region, double disparity_px,
+/// The margin shows where the body ends, which tells most: clothes may be smooth.
+RegionPixels pixelsOf(const InstanceRegion& region, const InstanceLabels& labels) {
+  constexpr int kMargin_px = 2;
+  const Box upper = upperPart(region.box);
+  const auto is = [&](int u, int v) { return labels.at(u, v) == region.label; };
+  const auto belongs = [&](int u, int v) {
+    return is(u, v) || is(u - kMargin_px, v) || is(u + kMargin_px, v) || is(u, v + kMargin_px);
+  };
+  return regionPixels({static_cast<int>(upper.left_px) - kMargin_px, static_cast<int>(upper.top_px) - kMargin_px},
+                      {static_cast<int>(upper.right_px) + kMargin_px, static_cast<int>(upper.bottom_px)}, belongs);
+}
+
+RegionPixels pixelsIn(const Box& box, int most) {
+  return regionPixels(
+      {static_cast<int>(box.left_px), static_cast<int>(box.top_px)},
+      {static_cast<int>(box.right_px), static_cast<int>(box.bottom_px)}, [](int, int) { return true; }, most);
+}
+
+RegionPixels pixelsAtDepth(const Box& box, double disparity_px, const SceneMotion& scene) {
+  constexpr double kAround_px = 3;  // half of a patch's step
+  const std::vector<ScenePoint> patches = samplePatches(*scene.features, box, disparity_px, scene.disparity_offset_px);
+  const auto belongs = [&](int u, int v) {
+    return std::ranges::any_of(patches, [&](const ScenePoint& patch) {
+      return std::abs(patch.uvd_px.x() - u) <= kAround_px && std::abs(patch.uvd_px.y() - v) <= kAround_px;
+    });
+  };
+  return regionPixels({static_cast<int>(box.left_px), static_cast<int>(box.top_px)},
+                      {static_cast<int>(box.right_px), static_cast<int>(box.bottom_px)}, belongs);
+}
+
+std::optional<RegionFlow::Seen> RegionFlow::operator()(const RegionPixels& pixels, double disparity_px,
                                                        const SceneMotion& scene, const SE3& T_world_cam) const {
-  const Pixels pixels = pixelsOf(region, *scene.features->frame->inputs.instances);
   const RegionTemplate now(scene.features->left.levels.front(), pixels.middle_px, pixels.offsets_px);
   const auto seen = observe(now, pixels, *scene.features, {{pixels.middle_px.x(), pixels.middle_px.y(), disparity_px}});
   if (!seen) return std::nullopt;
@@ -66,7 +122,8 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
   std::vector<PointObservation> observations{*seen};
   std::vector<const LookBack::PastScene*> scenes;
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
-  double last_s = 0;
+  double last_s = 0, not_static_chi2 = 0;
+  int looked_for = 0;
   for (std::size_t k = past_.past().size(); k-- > 0;) {
     const LookBack::PastScene& past = past_.past()[k];
     const double dt_s = secondsBetween(scene.head.stamp, past.scene->head.stamp);
@@ -74,12 +131,17 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
     const SE3 T_then_now = past.T_world_cam.inverse() * T_world_cam;
     const auto uvd_px = camera_.project(T_then_now * (p_cam + dt_s * velocity_mps));
     if (!uvd_px) break;
+    ++looked_for;
     const double unsure_mps = scenes.empty() ? kFastestWalk_mps : 0.5 * kFastestWalk_mps;
     const double reach_px = unsure_mps * (last_s - dt_s) * uvd_px->z() / camera_.baseline_m;
     const int radius_px = std::min(kMost_px, kAround_px + static_cast<int>(reach_px));
     const auto then = observe(now, pixels, *past.scene->features,
                               {*uvd_px, uvd_px->z() / static_cast<double>(seen->uvd_px.z()), radius_px});
     if (!then) continue;
+    const Eigen::Vector2d found_px = then->uvd_px.head<2>().cast<double>();
+    const double ncc = now.ncc(past.scene->features->left.levels.front(), found_px, uvd_px->z() / seen->uvd_px.z());
+    not_static_chi2 +=
+        misfit(pixels, nccAtRest(now, seen->uvd_px.cast<double>(), past, T_then_now)) - misfit(pixels, ncc);
     observations.push_back(*then);
     scenes.push_back(&past);
     last_s = dt_s;
@@ -87,31 +149,35 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const InstanceRegion& reg
   }
   if (std::ssize(observations) < kLeastSeen) return std::nullopt;
   const auto flow = fit(observations, scenes, scene, T_world_cam);
-  return flow ? std::optional<Seen>({*flow, -last_s}) : std::nullopt;
+  return flow ? std::optional<Seen>({*flow, -last_s, looked_for, not_static_chi2}) : std::nullopt;
 }
 
-/// Pixels of a region with a margin: clothes may be smooth, and what tells most is where they end.
-RegionFlow::Pixels RegionFlow::pixelsOf(const InstanceRegion& region, const InstanceLabels& labels) {
-  constexpr int kMargin_px = 2;
-  constexpr int kMost = 200;  // pixels, evenly spread
-  const Box upper = upperPart(region.box);
-  const int left = static_cast<int>(upper.left_px) - kMargin_px, right = static_cast<int>(upper.right_px) + kMargin_px,
-            top = static_cast<int>(upper.top_px) - kMargin_px, bottom = static_cast<int>(upper.bottom_px);
-  const int step = std::max(1, static_cast<int>(std::sqrt((right - left + 1) * (bottom - top + 1) / kMost)));
-  const auto is = [&](int u, int v) { return labels.at(u, v) == region.label; };
-  Pixels pixels;
-  for (int v = top; v <= bottom; v += step)
-    for (int u = left; u <= right; u += step)
-      if (is(u, v) || is(u - kMargin_px, v) || is(u + kMargin_px, v) || is(u, v + kMargin_px))
-        pixels.offsets_px.emplace_back(u, v);
-  for (const Eigen::Vector2f& p : pixels.offsets_px)
-    pixels.middle_px += p.cast<double>() / static_cast<double>(pixels.offsets_px.size());
-  for (Eigen::Vector2f& p : pixels.offsets_px) p -= pixels.middle_px.cast<float>();
-  return pixels;
+bool RegionFlow::rests(const RegionPixels& region, double disparity_px, const SceneMotion& scene,
+                       const SE3& T_world_cam) const {
+  constexpr double kSame = 0.8;  // correlation
+  if (past_.past().empty() || !past_.past().back().scene->features) return true;
+  const LookBack::PastScene& past = past_.past().back();
+  const RegionTemplate now(scene.features->left.levels.front(), region.middle_px, region.offsets_px);
+  return nccAtRest(now, {region.middle_px.x(), region.middle_px.y(), disparity_px}, past,
+                   past.T_world_cam.inverse() * T_world_cam, kSame) >= kSame;
+}
+
+/// The best correlation within the error of the disparity, or one that is high enough.
+double RegionFlow::nccAtRest(const RegionTemplate& now, const Eigen::Vector3d& uvd_px, const LookBack::PastScene& past,
+                             const SE3& T_then_now, double enough) const {
+  double best = 0;
+  for (const double error_px : {0.0, -0.5, 0.5, -1.0, 1.0}) {
+    if (best >= enough) break;
+    const Eigen::Vector3d here_px = uvd_px + Eigen::Vector3d(0, 0, error_px);
+    if (const auto there_px = camera_.project(T_then_now * camera_.triangulate(here_px)))
+      best = std::max(
+          best, now.ncc(past.scene->features->left.levels.front(), there_px->head<2>(), there_px->z() / here_px.z()));
+  }
+  return best;
 }
 
 /// Looks for the region in the left image, unless it is known there, and from there in the right one.
-std::optional<PointObservation> RegionFlow::observe(const RegionTemplate& now, const Pixels& pixels,
+std::optional<PointObservation> RegionFlow::observe(const RegionTemplate& now, const RegionPixels& pixels,
                                                     const Features& there, const Guess& guess) const {
   const Image &left = there.left.levels.front(), &right = there.right.levels.front();
   Eigen::Vector2d middle_px = guess.uvd_px.head<2>(), sigma_px = Eigen::Vector2d::Zero();

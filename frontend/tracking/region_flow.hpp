@@ -29,8 +29,22 @@ Box upperPart(const Box& region);
 /// Region of each label, ordered by label. Takes one look at each pixel.
 std::vector<InstanceRegion> regionsOf(const InstanceLabels& labels);
 
-/// Scene flow of what an instance label shows as a whole. It is looked for in the frames before by its brightness in
-/// both images. A point at rest and one that moves are then fitted to where it was, as to any scene point.
+/// Pixels of what may be one body, from their middle in the left image.
+struct RegionPixels {
+  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2f> offsets_px;
+  int step_px = 1;  // between neighbors: of large regions they are farther apart
+};
+
+/// Pixels of a region's upper part that have its label, with a margin.
+RegionPixels pixelsOf(const InstanceRegion& region, const InstanceLabels& labels);
+/// Pixels of a box, so many at most.
+RegionPixels pixelsIn(const Box& box, int most);
+/// Pixels of a box in which stereo finds a disparity [px].
+RegionPixels pixelsAtDepth(const Box& box, double disparity_px, const SceneMotion& scene);
+
+/// Scene flow of a region as a whole. It is looked for in the frames before by its brightness in both images. A point
+/// at rest and one that moves are then fitted to where it was, as to any scene point.
 class RegionFlow {
  public:
   /// `past` outlives it.
@@ -40,26 +54,26 @@ class RegionFlow {
   struct Seen {
     SceneFlow flow;
     double duration_s = 0;
+    int looked_for = 0;          // in so many frames before
+    double not_static_chi2 = 0;  // by which moving explains better than resting how bright the pixels were
   };
-  /// Flow of the region's upper part; `disparity_px` is that of its points. Empty where it is found in too few frames.
-  std::optional<Seen> operator()(const InstanceRegion& region, double disparity_px, const SceneMotion& scene,
+  /// Flow of a region; `disparity_px` is that of its points. Empty where it is found in too few frames.
+  std::optional<Seen> operator()(const RegionPixels& region, double disparity_px, const SceneMotion& scene,
                                  const SE3& T_world_cam) const;
+  /// True for a region that looked the same in the frame before, where it was if it rests.
+  bool rests(const RegionPixels& region, double disparity_px, const SceneMotion& scene, const SE3& T_world_cam) const;
 
  private:
-  /// Pixels of a region, from its middle.
-  struct Pixels {
-    Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
-    std::vector<Eigen::Vector2f> offsets_px;
-  };
-  static Pixels pixelsOf(const InstanceRegion& region, const InstanceLabels& labels);
   /// Place where the region is looked for, and how much larger it is seen there than now.
   struct Guess {
     Eigen::Vector3d uvd_px;
     double scale = 1;
     int radius_px = 0;  // columns each way
   };
-  std::optional<PointObservation> observe(const RegionTemplate& now, const Pixels& pixels, const Features& there,
+  std::optional<PointObservation> observe(const RegionTemplate& now, const RegionPixels& pixels, const Features& there,
                                           const Guess& guess) const;
+  double nccAtRest(const RegionTemplate& now, const Eigen::Vector3d& uvd_px, const LookBack::PastScene& past,
+                   const SE3& T_then_now, double enough = 1) const;
   std::optional<SceneFlow> fit(const std::vector<PointObservation>& newest_first,
                                const std::vector<const LookBack::PastScene*>& scenes, const SceneMotion& scene,
                                const SE3& T_world_cam) const;

@@ -36,8 +36,9 @@ struct MeasuredPoints {
 /// fixed to the vehicle from then on.
 struct TrackedObject {
   TrackId track;
-  bool born_slow = false;      // it was as slow and small as a person when it was spawned
-  bool born_labelled = false;  // it was spawned from an instance label
+  bool born_slow = false;       // it was as slow and small as a person when it was spawned
+  bool born_as_region = false;  // it was spawned from a region of the image, not from points
+  bool born_labelled = false;   // and an instance label shows that region
   LifeCycle life;
   ObjectKinematics kinematics;    // in the front-end's own odometry world
   SE3 T_cam_body;                 // of the newest frame
@@ -49,8 +50,8 @@ struct TrackedObject {
   Eigen::Vector3d spawned_at_world = Eigen::Vector3d::Zero();
   std::vector<ObjectObservation> backlog;  // observations until it is confirmed, oldest first
 
-  /// True when only an instance label led to it yet: it gives way to what is found without one.
-  bool isGuess() const { return born_labelled && !life.reported(); }
+  /// True when only a region led to it yet: it gives way to what is found by points.
+  bool isGuess() const { return born_as_region && !life.reported(); }
   const BodyPoint* find(PointId point) const;
   /// Index of a point that is there.
   std::size_t indexOf(PointId point) const { return find(point) - points.data(); }

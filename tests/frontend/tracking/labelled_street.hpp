@@ -92,6 +92,14 @@ class LabelledStreet {
         labels->mutableRow(v)[u] = kLabel;
     return scene(kNow, std::move(labels), points_px);
   }
+  /// The newest frame without labels. The points were followed, and not where they would be at rest; the board stands
+  /// on the road.
+  std::shared_ptr<SceneMotion> withoutLabels(const std::vector<Eigen::Vector3d>& points_px) const {
+    auto newest = scene(kNow, nullptr, points_px);
+    for (ScenePoint& point : newest->points) point.age = 2;
+    newest->ground.height_m = middle_m(kNow).y() + board_.height_m / 2;
+    return newest;
+  }
   static InstanceRegion region(const Box& labelled) { return {kLabel, labelled}; }
 
   LookBack past{12, 3, {}, kNarrowRig};  // with all frames but the newest
@@ -125,11 +133,12 @@ class LabelledStreet {
     scene->odometry.T_previous_now = T_world_cam(0).inverse() * T_world_cam(1);  // as each step is
     scene->camera_speed_mps = scene->odometry.T_previous_now.translation().norm() / kFrame_s;
     scene->features = features;
+    const InstanceLabels* instances = pair->inputs.instances.get();
     for (const Eigen::Vector3d& uvd_px : points_px)
       scene->points.push_back({.point = {std::ssize(scene->points)},
                                .uvd_px = uvd_px,
                                .sigma_px = Eigen::Vector3d::Constant(0.3),
-                               .instance = pair->inputs.instances->at(uvd_px.x(), uvd_px.y()),
+                               .instance = instances ? instances->at(uvd_px.x(), uvd_px.y()) : std::uint16_t{0},
                                .flow = {}});
     return scene;
   }

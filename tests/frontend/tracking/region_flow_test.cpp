@@ -90,8 +90,9 @@ constexpr double kCertain_chi2 = 100, kUncertain_chi2 = 16;
 /// Flow of a box in the newest frame, whose middle is on a surface with this disparity.
 std::optional<SceneFlow> flowIn(const Box& labelled, double disparity_px, const LabelledStreet& street) {
   const RegionFlow flow(street.past, kNarrowRig);
-  const auto seen =
-      flow(LabelledStreet::region(labelled), disparity_px, *street.now(labelled, {}), LabelledStreet::T_world_cam());
+  const auto scene = street.now(labelled, {});
+  const RegionPixels pixels = pixelsOf(LabelledStreet::region(labelled), *scene->features->frame->inputs.instances);
+  const auto seen = flow(pixels, disparity_px, *scene, LabelledStreet::T_world_cam());
   if (!seen) return std::nullopt;
   EXPECT_NEAR(seen->duration_s, LabelledStreet::kFrame_s * (seen->flow.observations - 1), 1e-9);
   return seen->flow;
@@ -120,6 +121,50 @@ TEST(RegionFlow, IsTheVelocityOfWhoWalksBeforeAWall) {
     EXPECT_NEAR(kNarrowRig.project(flow->p_cam)->z(), street.onBoard_px(0, 0).z(), 0.5) << seed;
     EXPECT_NEAR(kNarrowRig.project(flow->p_cam)->x(), street.onBoard_px(0, 0).x(), 2) << seed;
   }
+}
+
+TEST(RegionFlow, TellsByBrightnessWhetherTheRegionRests) {
+  for (const double walk_mps : {0.0, 1.4}) {
+    const LabelledStreet street({.walk_mps = walk_mps});
+    const auto scene = street.now(street.boardBox(), {});
+    const RegionFlow flow(street.past, kNarrowRig);
+    const auto rests = [&](const Box& box, double disparity_px) {
+      return flow.rests(pixelsIn(box, 60), disparity_px, *scene, LabelledStreet::T_world_cam());
+    };
+    const Eigen::Vector3d wall_px = LabelledStreet::onWall_px(-2, 0);
+    EXPECT_EQ(rests(street.boardBox(), street.onBoard_px(0, 0).z()), walk_mps == 0);
+    EXPECT_TRUE(rests(LabelledStreet::around(wall_px, 0.8, 0.8), wall_px.z()));
+    const RegionPixels board = pixelsAtDepth(street.boardBox(), street.onBoard_px(0, 0).z(), *scene);
+    const auto seen = flow(board, street.onBoard_px(0, 0).z(), *scene, LabelledStreet::T_world_cam());
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->looked_for, LabelledStreet::kNow);
+    EXPECT_EQ(seen->not_static_chi2 > kCertain_chi2, walk_mps > 0) << seen->not_static_chi2;
+  }
+}
+
+TEST(RegionFlow, TakesPixelsThatAreEvenlySpread) {
+  const RegionPixels all = pixelsIn({10, 20, 14, 27}, 1000), some = pixelsIn({10, 20, 49, 99}, 60);
+  EXPECT_EQ(all.offsets_px.size(), 40U);
+  EXPECT_EQ(all.step_px, 1);
+  EXPECT_LT((all.middle_px - Eigen::Vector2d(12, 23.5)).norm(), 1e-9);
+  EXPECT_EQ(some.step_px, 7);
+  EXPECT_EQ(some.offsets_px.size(), 6U * 12U);
+}
+
+TEST(RegionFlow, TakesPixelsAtOneDepth) {
+  const LabelledStreet street({});
+  const auto scene = street.now(street.boardBox(), {});
+  const double disparity_px = street.onBoard_px(0, 0).z();
+  const Box wide = LabelledStreet::around(street.onBoard_px(0, 0), 0.9, 0.85), board = street.boardBox();
+  const RegionPixels pixels = pixelsAtDepth(wide, disparity_px, *scene);
+  ASSERT_GT(pixels.offsets_px.size(), 15U);
+  constexpr double kPatch_px = 8;  // half a window of a patch, which is at the board's depth where it shows its border
+  const auto isOnBoard = [&](const Eigen::Vector2f& offset_px) {
+    const double u_px = pixels.middle_px.x() + offset_px.x();
+    return u_px > board.left_px - kPatch_px && u_px < board.right_px + kPatch_px;
+  };
+  const auto on_board = std::ranges::count_if(pixels.offsets_px, isOnBoard);
+  EXPECT_GT(static_cast<double>(on_board), 0.9 * static_cast<double>(pixels.offsets_px.size()));
 }
 
 TEST(RegionFlow, FindsWhoWalksToTheLeft) {
