@@ -22,11 +22,21 @@ constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the midd
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
 
+/// Where an object is: the box around its points, and somewhat beside it.
+class Place {
+ public:
+  explicit Place(const TrackedObject& object)
+      : box_(object.extent(kBeside_m)), T_body_cam_(object.T_cam_body.inverse()) {}
+  bool holds(const Eigen::Vector3d& p_cam) const { return box_.contains(T_body_cam_ * p_cam); }
+
+ private:
+  static constexpr double kBeside_m = 0.4;
+  Eigen::AlignedBox3d box_;
+  SE3 T_body_cam_;
+};
+
 /// True when a point lies on what is known of an object, or hardly beside it.
-bool isAt(const TrackedObject& object, const Eigen::Vector3d& p_cam) {
-  constexpr double kBeside_m = 0.4;
-  return object.extent(kBeside_m).contains(object.T_cam_body.inverse() * p_cam);
-}
+bool isAt(const TrackedObject& object, const Eigen::Vector3d& p_cam) { return Place(object).holds(p_cam); }
 
 }  // namespace
 
@@ -249,11 +259,24 @@ void ObjectTracker::spawnWalkers(const SceneMotion& scene, const std::vector<int
   }
 }
 
+/// Tells of each point whether it lies at an object, even if no object claims it.
+std::vector<bool> ObjectTracker::onObjects(const SceneMotion& scene) const {
+  std::vector<bool> on_objects(scene.points.size(), false);
+  for (const TrackedObject& object : objects_) {
+    const Place place(object);
+    for (std::size_t i = 0; i < scene.points.size(); ++i) {
+      const Eigen::Vector3d& uvd_px = scene.points[i].uvd_px;
+      if (uvd_px.z() > 0 && place.holds(camera_.triangulate(uvd_px))) on_objects[i] = true;
+    }
+  }
+  return on_objects;
+}
+
 /// Spawns people who are found as a whole, where instance labels or depth show them.
 void ObjectTracker::spawnRegions(const SceneMotion& scene, const std::vector<bool>& taken) {
   if (!scene.features) return;
   const RegionWalkers mover_of(look_back_, camera_);
-  for (const RegionWalkers::Candidate& candidate : mover_of.candidates(scene, taken, T_world_cam_)) {
+  for (const RegionWalkers::Candidate& candidate : mover_of.candidates(scene, taken, onObjects(scene), T_world_cam_)) {
     const auto mover = mover_of(candidate, scene, T_world_cam_);
     if (!mover) continue;
     const auto holds = [&](const TrackedObject& object) { return isAt(object, mover->component.centroid_cam); };

@@ -48,6 +48,7 @@ class ObjectTracker {
   void confirm(TrackedObject& object, FrameMeasurements& measurements);
   void matchComponents(const SceneMotion& scene);
   void spawnWalkers(const SceneMotion& scene, const std::vector<int>& object_of, const std::vector<bool>& taken);
+  std::vector<bool> onObjects(const SceneMotion& scene) const;
   void spawnRegions(const SceneMotion& scene, const std::vector<bool>& taken);
   void dropFarthest();
   void reappear(TrackedObject& object, const MotionComponent& component) const;

@@ -114,7 +114,8 @@ RegionPixels pixelsAtDepth(const Box& box, double disparity_px, const SceneMotio
 }
 
 std::optional<RegionFlow::Seen> RegionFlow::operator()(const RegionPixels& pixels, double disparity_px,
-                                                       const SceneMotion& scene, const SE3& T_world_cam) const {
+                                                       const SceneMotion& scene, const SE3& T_world_cam,
+                                                       double least_found) const {
   const RegionTemplate now(scene.features->left.levels.front(), pixels.middle_px, pixels.offsets_px);
   const auto seen = observe(now, pixels, *scene.features, {{pixels.middle_px.x(), pixels.middle_px.y(), disparity_px}});
   if (!seen) return std::nullopt;
@@ -123,7 +124,10 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const RegionPixels& pixel
   std::vector<const LookBack::PastScene*> scenes;
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   double last_s = 0, not_static_chi2 = 0;
-  int looked_for = 0;
+  const auto isLookedAt = [&](const LookBack::PastScene& past) {
+    return secondsBetween(past.scene->head.stamp, scene.head.stamp) <= kLongest_s;
+  };
+  double may_miss = (1 - least_found) * static_cast<double>(std::ranges::count_if(past_.past(), isLookedAt));
   for (std::size_t k = past_.past().size(); k-- > 0;) {
     const LookBack::PastScene& past = past_.past()[k];
     const double dt_s = secondsBetween(scene.head.stamp, past.scene->head.stamp);
@@ -131,12 +135,12 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const RegionPixels& pixel
     const SE3 T_then_now = past.T_world_cam.inverse() * T_world_cam;
     const auto uvd_px = camera_.project(T_then_now * (p_cam + dt_s * velocity_mps));
     if (!uvd_px) break;
-    ++looked_for;
     const double unsure_mps = scenes.empty() ? kFastestWalk_mps : 0.5 * kFastestWalk_mps;
     const double reach_px = unsure_mps * (last_s - dt_s) * uvd_px->z() / camera_.baseline_m;
     const int radius_px = std::min(kMost_px, kAround_px + static_cast<int>(reach_px));
     const auto then = observe(now, pixels, *past.scene->features,
                               {*uvd_px, uvd_px->z() / static_cast<double>(seen->uvd_px.z()), radius_px});
+    if (!then && --may_miss < 0) return std::nullopt;
     if (!then) continue;
     const Eigen::Vector2d found_px = then->uvd_px.head<2>().cast<double>();
     const double ncc = now.ncc(past.scene->features->left.levels.front(), found_px, uvd_px->z() / seen->uvd_px.z());
@@ -149,7 +153,7 @@ std::optional<RegionFlow::Seen> RegionFlow::operator()(const RegionPixels& pixel
   }
   if (std::ssize(observations) < kLeastSeen) return std::nullopt;
   const auto flow = fit(observations, scenes, scene, T_world_cam);
-  return flow ? std::optional<Seen>({*flow, -last_s, looked_for, not_static_chi2}) : std::nullopt;
+  return flow ? std::optional<Seen>({*flow, -last_s, not_static_chi2}) : std::nullopt;
 }
 
 bool RegionFlow::rests(const RegionPixels& region, double disparity_px, const SceneMotion& scene,

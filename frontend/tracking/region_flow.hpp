@@ -54,12 +54,12 @@ class RegionFlow {
   struct Seen {
     SceneFlow flow;
     double duration_s = 0;
-    int looked_for = 0;          // in so many frames before
     double not_static_chi2 = 0;  // by which moving explains better than resting how bright the pixels were
   };
-  /// Flow of a region; `disparity_px` is that of its points. Empty where it is found in too few frames.
+  /// Flow of a region; `disparity_px` is that of its points. Empty where it is found in too few frames, or in less than
+  /// a share of those that are looked at.
   std::optional<Seen> operator()(const RegionPixels& region, double disparity_px, const SceneMotion& scene,
-                                 const SE3& T_world_cam) const;
+                                 const SE3& T_world_cam, double least_found) const;
   /// True for a region that looked the same in the frame before, where it was if it rests.
   bool rests(const RegionPixels& region, double disparity_px, const SceneMotion& scene, const SE3& T_world_cam) const;
 

@@ -53,15 +53,12 @@ void expectUsual(MotionComponent& component) {
   component.velocity_covariance = likelier.covariance;
 }
 
-/// True when a region that no label shows is found in most frames, moving explains its places, and its brightness, too,
-/// is explained by moving and not by resting. Where a pole or a fence hides the background, parts of both may look like
-/// a body, and are found elsewhere by chance.
+/// True when moving explains the places of a region that no label shows, and its brightness, too, is explained by
+/// moving and not by resting. Where a pole or a fence hides the background, parts of both may look like a body, and are
+/// found elsewhere by chance.
 bool isProven(const RegionFlow::Seen& seen) {
-  constexpr double kMostFrames = 0.6;
-  const int before = seen.flow.observations - 1;
   const double degrees_of_freedom = 3 * seen.flow.observations - 6;
-  return before >= kMostFrames * seen.looked_for && seen.flow.moving_chi2 < degrees_of_freedom &&
-         seen.not_static_chi2 > kWalkerNotStaticChi2;
+  return seen.flow.moving_chi2 < degrees_of_freedom && seen.not_static_chi2 > kWalkerNotStaticChi2;
 }
 
 bool isSure(const MotionComponent& component) {
@@ -73,9 +70,10 @@ bool isSure(const MotionComponent& component) {
 
 std::vector<RegionWalkers::Candidate> RegionWalkers::candidates(const SceneMotion& scene,
                                                                 const std::vector<bool>& taken,
+                                                                const std::vector<bool>& on_objects,
                                                                 const SE3& T_world_cam) const {
   std::vector<Candidate> all = labelled(scene, taken);
-  for (TrunkWindow& window : TrunkWindows(flow_of_, camera_)(scene, taken, T_world_cam))
+  for (TrunkWindow& window : TrunkWindows(flow_of_, camera_)(scene, on_objects, T_world_cam))
     all.push_back({{0, window.box}, {window.point}, scene.points[window.point].uvd_px.z(), std::move(window.pixels)});
   return all;
 }
@@ -109,10 +107,11 @@ std::vector<RegionWalkers::Candidate> RegionWalkers::labelled(const SceneMotion&
 std::optional<RegionWalkers::Mover> RegionWalkers::operator()(const Candidate& candidate, const SceneMotion& scene,
                                                               const SE3& T_world_cam) const {
   const double disparity_px = candidate.disparity_px;
+  constexpr double kMostFrames = 0.6;  // of those that are looked at
   const bool is_labelled = candidate.region.label != 0;
   // Beside a label that is late, or lies across a body, the body goes on; beside one on a wall the wall does.
   if (is_labelled && !standsOut(upperPart(candidate.region.box), disparity_px, scene)) return std::nullopt;
-  const auto seen = flow_of_(candidate.pixels, disparity_px, scene, T_world_cam);
+  const auto seen = flow_of_(candidate.pixels, disparity_px, scene, T_world_cam, is_labelled ? 0 : kMostFrames);
   if (!seen || seen->flow.static_chi2 - seen->flow.moving_chi2 < kWalkerNotStaticChi2) return std::nullopt;
   if (!is_labelled && !isProven(*seen)) return std::nullopt;
   Mover mover{

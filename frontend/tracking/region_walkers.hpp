@@ -33,10 +33,10 @@ class RegionWalkers {
     RegionPixels pixels{};
   };
   /// Candidates of a frame: what labels show, in their order, and what stands out in depth. Where labels are too many,
-  /// some of them are candidates, and others in the next frame. `taken` points are those of known objects, which are no
-  /// candidates.
+  /// some of them are candidates, and others in the next frame. A label with a point that is `taken` by an object is no
+  /// candidate. Points that lie at an object lead to none.
   std::vector<Candidate> candidates(const SceneMotion& scene, const std::vector<bool>& taken,
-                                    const SE3& T_world_cam) const;
+                                    const std::vector<bool>& on_objects, const SE3& T_world_cam) const;
   /// Mover that a candidate is; empty where nobody surely moves.
   std::optional<Mover> operator()(const Candidate& candidate, const SceneMotion& scene, const SE3& T_world_cam) const;
 

@@ -15,7 +15,6 @@ namespace {
 constexpr PatchParams kAlignment{.max_shift_px = 6, .min_ncc = 0.75};
 constexpr double kDisparitySearch_px = 2;  // around the prediction
 constexpr int kStep_px = 6;                // between patches, which then share half of their pixels
-constexpr int kMostPatches = 64;           // about; of a large object they are farther apart
 constexpr double kSameDepth_px = 0.7;      // of disparity, from that of the points
 constexpr double kPatchSigma_px = 0.25, kPatchDisparitySigma_px = 0.35;  // no corners: somewhat worse than those
 
@@ -43,9 +42,9 @@ std::optional<ScenePoint> findPatch(const ScenePoint& measured, const Features& 
 }
 
 /// Step between patches that cover a box.
-int stepOf(const Box& box) {
+int stepOf(const Box& box, int most) {
   const double area_px2 = (box.right_px - box.left_px) * (box.bottom_px - box.top_px);
-  return std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / kMostPatches)));
+  return std::max(kStep_px, static_cast<int>(std::sqrt(area_px2 / most)));
 }
 
 double medianDisparity_px(const std::vector<ScenePoint>& points) {
@@ -59,8 +58,8 @@ double medianDisparity_px(const std::vector<ScenePoint>& points) {
 }  // namespace
 
 std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
-                                      double disparity_offset_px) {
-  const int step_px = stepOf(box);
+                                      double disparity_offset_px, int most) {
+  const int step_px = stepOf(box, most);
   const Image &left = features.left.levels.front(), &right = features.right.levels.front();
   std::vector<ScenePoint> patches;
   for (double v = box.top_px; v <= box.bottom_px; v += step_px) {
@@ -78,11 +77,12 @@ std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, 
   return patches;
 }
 
-double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px) {
-  const int step_px = stepOf(box);
+double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px,
+                    int most) {
+  const int step_px = stepOf(box, most);
   const int columns = static_cast<int>((box.right_px - box.left_px) / step_px) + 1,
             rows = static_cast<int>((box.bottom_px - box.top_px) / step_px) + 1;
-  const auto found = samplePatches(features, box, disparity_px, disparity_offset_px).size();
+  const auto found = samplePatches(features, box, disparity_px, disparity_offset_px, most).size();
   return static_cast<double>(found) / (columns * rows);
 }
 

@@ -20,13 +20,17 @@ std::vector<ScenePoint> searchByProjection(const TrackedObject& body, const Meas
 /// True for a followed point, false for a patch that `samplePatches` placed.
 inline bool isFollowed(PointId point) { return point.value >= 0; }
 
+/// Patches at most, about: in a large box they are farther apart.
+inline constexpr int kMostPatches = 64;
+
 /// Patches of a part of the image that lie at about a disparity: evidence of a body on which corners are few. Numbered
 /// -1, -2, ...
 std::vector<ScenePoint> samplePatches(const Features& features, const Box& box, double disparity_px,
-                                      double disparity_offset_px);
+                                      double disparity_offset_px, int most = kMostPatches);
 
 /// Share of a box's patches that lie at about a disparity.
-double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px);
+double shareAtDepth(const Features& features, const Box& box, double disparity_px, double disparity_offset_px,
+                    int most = kMostPatches);
 
 /// Patches between the measured points of a body, at about their disparity.
 std::vector<ScenePoint> samplePatches(const MeasuredPoints& measured, double disparity_offset_px);

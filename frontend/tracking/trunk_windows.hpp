@@ -6,11 +6,12 @@
 #include "core/stereo_camera.hpp"
 #include "frontend/messages.hpp"
 #include "frontend/tracking/region_flow.hpp"
+#include "frontend/tracking/search_by_projection.hpp"
 
 namespace motorcade {
 
 /// True when what lies to both sides of a box has another depth than what the box shows: it ends where its body does.
-bool standsOut(const Box& box, double disparity_px, const SceneMotion& scene);
+bool standsOut(const Box& box, double disparity_px, const SceneMotion& scene, int most_patches = kMostPatches);
 
 /// Part of the image that may show a person's trunk and head, around a scene point.
 struct TrunkWindow {
@@ -27,8 +28,8 @@ class TrunkWindows {
   /// `flow` outlives it.
   TrunkWindows(const RegionFlow& flow, const StereoCamera& camera) : flow_(flow), camera_(camera) {}
 
-  /// Windows of a frame. Points that are `taken`, or that a label shows, have none.
-  std::vector<TrunkWindow> operator()(const SceneMotion& scene, const std::vector<bool>& taken,
+  /// Windows of a frame. Points that lie at an object, or that a label shows, have none.
+  std::vector<TrunkWindow> operator()(const SceneMotion& scene, const std::vector<bool>& on_objects,
                                       const SE3& T_world_cam) const;
 
  private:

@@ -92,7 +92,7 @@ std::optional<SceneFlow> flowIn(const Box& labelled, double disparity_px, const 
   const RegionFlow flow(street.past, kNarrowRig);
   const auto scene = street.now(labelled, {});
   const RegionPixels pixels = pixelsOf(LabelledStreet::region(labelled), *scene->features->frame->inputs.instances);
-  const auto seen = flow(pixels, disparity_px, *scene, LabelledStreet::T_world_cam());
+  const auto seen = flow(pixels, disparity_px, *scene, LabelledStreet::T_world_cam(), 0);
   if (!seen) return std::nullopt;
   EXPECT_NEAR(seen->duration_s, LabelledStreet::kFrame_s * (seen->flow.observations - 1), 1e-9);
   return seen->flow;
@@ -135,9 +135,9 @@ TEST(RegionFlow, TellsByBrightnessWhetherTheRegionRests) {
     EXPECT_EQ(rests(street.boardBox(), street.onBoard_px(0, 0).z()), walk_mps == 0);
     EXPECT_TRUE(rests(LabelledStreet::around(wall_px, 0.8, 0.8), wall_px.z()));
     const RegionPixels board = pixelsAtDepth(street.boardBox(), street.onBoard_px(0, 0).z(), *scene);
-    const auto seen = flow(board, street.onBoard_px(0, 0).z(), *scene, LabelledStreet::T_world_cam());
+    const auto seen = flow(board, street.onBoard_px(0, 0).z(), *scene, LabelledStreet::T_world_cam(), 1);
     ASSERT_TRUE(seen);
-    EXPECT_EQ(seen->looked_for, LabelledStreet::kNow);
+    EXPECT_EQ(seen->flow.observations, LabelledStreet::kNow + 1);
     EXPECT_EQ(seen->not_static_chi2 > kCertain_chi2, walk_mps > 0) << seen->not_static_chi2;
   }
 }
@@ -205,6 +205,24 @@ TEST(RegionFlow, IsEmptyWhereTooFewFramesAreRemembered) {
   const auto flow = flowWith(2);
   ASSERT_TRUE(flow);
   EXPECT_EQ(flow->observations, 3);
+}
+
+TEST(RegionFlow, IsEmptyWhereItIsFoundInTooSmallAShareOfTheFrames) {
+  LabelledStreet street({.seed = 1});
+  const LookBack all = street.past, others = LabelledStreet({.seed = 2}).past;
+  street.past.forget();
+  for (std::size_t i = 0; i < all.past().size(); ++i) {
+    const auto& past = (i < 3 ? others : all).past()[i];
+    street.past.remember(past.scene, past.T_world_cam, {}, {});
+  }
+  const auto scene = street.now(street.boardBox(), {});
+  const double disparity_px = street.onBoard_px(0, 0).z();
+  const RegionPixels board = pixelsAtDepth(street.boardBox(), disparity_px, *scene);
+  const RegionFlow flow(street.past, kNarrowRig);
+  const auto seen = flow(board, disparity_px, *scene, LabelledStreet::T_world_cam(), 0.4);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->flow.observations, 3) << "two of five frames before, and the newest";
+  EXPECT_FALSE(flow(board, disparity_px, *scene, LabelledStreet::T_world_cam(), 0.6));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::optional<MotionComponent> walkerIn(const Box& labelled, const SceneMotion& 
                                         std::vector<bool> taken = {}) {
   taken.resize(scene.points.size());
   const RegionWalkers walkers(street.past, kNarrowRig);
-  const auto candidates = walkers.candidates(scene, taken, LabelledStreet::T_world_cam());
+  const auto candidates = walkers.candidates(scene, taken, taken, LabelledStreet::T_world_cam());
   if (candidates.empty()) return std::nullopt;
   EXPECT_EQ(candidates.size(), 1U);
   const Box& found = candidates.front().region.box;
@@ -65,7 +65,7 @@ TEST(RegionWalkers, FindWhoWalksWithoutALabel) {
     const LabelledStreet street({.walk_mps = walk_mps});
     const auto scene = street.withoutLabels({street.onBoard_px(0.1, -0.2)});
     const RegionWalkers walkers(street.past, kNarrowRig);
-    const auto candidates = walkers.candidates(*scene, {false}, LabelledStreet::T_world_cam());
+    const auto candidates = walkers.candidates(*scene, {false}, {false}, LabelledStreet::T_world_cam());
     ASSERT_EQ(candidates.size(), walk_mps == 0 ? 0U : 1U) << walk_mps;
     if (candidates.empty()) continue;
     EXPECT_EQ(candidates[0].region.label, 0);
@@ -189,7 +189,7 @@ TEST(RegionWalkers, LookAtSomeOfTooManyLabelsAndAtOthersInTheNextFrame) {
   std::set<std::uint16_t> seen;
   for (int frame = 0; frame < 6; ++frame) {
     scene->head.frame = {frame};
-    const auto candidates = walkers.candidates(*scene, taken, LabelledStreet::T_world_cam());
+    const auto candidates = walkers.candidates(*scene, taken, taken, LabelledStreet::T_world_cam());
     EXPECT_EQ(candidates.size(), 32U) << frame;
     for (const auto& candidate : candidates) seen.insert(candidate.region.label);
   }

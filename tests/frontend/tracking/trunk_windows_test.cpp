@@ -14,10 +14,10 @@ using test::kNarrowRig;
 using test::LabelledStreet;
 
 std::vector<TrunkWindow> windowsIn(const SceneMotion& scene, const LabelledStreet& street,
-                                   std::vector<bool> taken = {}) {
-  taken.resize(scene.points.size());
+                                   std::vector<bool> on_objects = {}) {
+  on_objects.resize(scene.points.size());
   const RegionFlow flow(street.past, kNarrowRig);
-  return TrunkWindows(flow, kNarrowRig)(scene, taken, LabelledStreet::T_world_cam());
+  return TrunkWindows(flow, kNarrowRig)(scene, on_objects, LabelledStreet::T_world_cam());
 }
 std::vector<TrunkWindow> windowsAt(const Eigen::Vector3d& point_px, const LabelledStreet& street) {
   return windowsIn(*street.withoutLabels({point_px}), street);
@@ -69,6 +69,9 @@ TEST(TrunkWindows, AreNotAroundPointsThatTellNothing) {
   scene->points[0] = point;
   scene->points[0].age = 1;
   EXPECT_TRUE(windowsIn(*scene, street).empty()) << "new";
+  scene->points[0] = point;
+  scene->points[0].ambiguous = true;
+  EXPECT_TRUE(windowsIn(*scene, street).empty()) << "also found where it would be at rest";
   scene->points[0] = point;
   scene->points[0].label = PointLabel::kGround;
   EXPECT_TRUE(windowsIn(*scene, street).empty()) << "on the road";
