@@ -40,7 +40,7 @@ bool isFlank(const TrackedObject& older, const Eigen::AlignedBox3d& own, const T
 /// Two standard deviations of the place of one relative to the other, along the axes of the older. Of what is far ahead
 /// the distance is uncertain and the lane is not: cars abreast stay two.
 Eigen::Array3d slackBetween_m(const TrackedObject& older, const TrackedObject& younger, const SE3& T_older_younger) {
-  const Eigen::Matrix3d R = T_older_younger.rotation();
+  const Eigen::Matrix3d& R = T_older_younger.rotation();
   const Eigen::Matrix3d covariance = older.kinematics.poseCovariance().topLeftCorner<3, 3>() +
                                      R * younger.kinematics.poseCovariance().topLeftCorner<3, 3>() * R.transpose();
   return (kSigmas * covariance.diagonal().array().sqrt()).min(kMaxSlack_m);
