@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/elementary.hpp"
 #include "frontend/tracking/search_by_projection.hpp"
 #include "frontend/tracking/small_body.hpp"
 
@@ -78,7 +79,7 @@ double misfit(const RegionPixels& region, double ncc) {
   constexpr double kWindow_px = 7;
   constexpr double kLeastUnexplained = 0.01;  // sampling between pixels leaves as much
   const double side = region.step_px / kWindow_px;
-  return static_cast<double>(region.offsets_px.size()) * side * side * std::log(1 + kLeastUnexplained - ncc);
+  return static_cast<double>(region.offsets_px.size()) * side * side * logarithm(1 + kLeastUnexplained - ncc);
 }
 
 }  // namespace

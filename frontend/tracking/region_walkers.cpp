@@ -9,6 +9,7 @@
 
 #include <Eigen/LU>
 
+#include "core/elementary.hpp"
 #include "frontend/motion/shared_velocity_error.hpp"
 #include "frontend/tracking/body_axes.hpp"
 #include "frontend/tracking/see_through.hpp"
@@ -40,7 +41,7 @@ struct ExpectedVelocity {
     const Eigen::Matrix3d both = C + sigma_mps * sigma_mps * Eigen::Matrix3d::Identity(), gain = C * both.inverse();
     velocity_mps = v - gain * v;
     covariance = C - gain * C;
-    misfit = v.dot(both.inverse() * v) + std::log(both.determinant());
+    misfit = v.dot(both.inverse() * v) + logarithm(both.determinant());
   }
 };
 
