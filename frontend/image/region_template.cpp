@@ -9,14 +9,18 @@
 namespace motorcade {
 namespace {
 
+/// Brightness between four pixels, of which (x, y) is the upper left.
+float interpolated(const Image& image, int x, int y, float share_x, float share_y) {
+  const std::uint8_t *upper = image.row(y) + x, *lower = image.row(y + 1) + x;
+  const float above = static_cast<float>(upper[0]) + share_x * static_cast<float>(upper[1] - upper[0]);
+  const float below = static_cast<float>(lower[0]) + share_x * static_cast<float>(lower[1] - lower[0]);
+  return above + share_y * (below - above);
+}
+
 float sample(const Image& image, double u_px, double v_px) {
   const double u = std::clamp(u_px, 0.0, image.width() - 1.001), v = std::clamp(v_px, 0.0, image.height() - 1.001);
   const int x = static_cast<int>(u), y = static_cast<int>(v);
-  const auto fx = static_cast<float>(u - x), fy = static_cast<float>(v - y);
-  const std::uint8_t *upper = image.row(y) + x, *lower = image.row(y + 1) + x;
-  const float above = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
-  const float below = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
-  return above + fy * (below - above);
+  return interpolated(image, x, y, static_cast<float>(u - x), static_cast<float>(v - y));
 }
 
 /// To zero mean and unit norm; false where all values are alike.
@@ -49,19 +53,7 @@ struct Peak {
   }
 };
 
-}  // namespace
-
-RegionTemplate::RegionTemplate(const Image& image, const Eigen::Vector2d& middle_px,
-                               std::vector<Eigen::Vector2f> offsets_px, double scale)
-    : offsets_px_(std::move(offsets_px)) {
-  for (const Eigen::Vector2f& offset : offsets_px_)
-    values_.push_back(sample(image, middle_px.x() + scale * offset.x(), middle_px.y() + scale * offset.y()));
-  if (!normalize(values_)) values_.clear();
-}
-
-namespace {
-
-/// Correlation of normalized values with those of `sample(i)`.
+/// Correlation of normalized values with those of `sampled(i)`.
 template <class Sample>
 double correlation(const std::vector<float>& values, const Sample& sampled) {
   float sum = 0, energy = 0, product = 0;
@@ -90,10 +82,7 @@ class ShiftedPixels {
   float operator()(std::size_t i, int right_px, int down_px) const {
     const Pixel& pixel = pixels_[i];
     const int x = std::clamp(pixel.x + right_px, 0, last_x_), y = std::clamp(pixel.y + down_px, 0, last_y_);
-    const std::uint8_t *upper = image_.row(y) + x, *lower = image_.row(y + 1) + x;
-    const float above = static_cast<float>(upper[0]) + pixel.share_x * static_cast<float>(upper[1] - upper[0]);
-    const float below = static_cast<float>(lower[0]) + pixel.share_x * static_cast<float>(lower[1] - lower[0]);
-    return above + pixel.share_y * (below - above);
+    return interpolated(image_, x, y, pixel.share_x, pixel.share_y);
   }
 
  private:
@@ -108,6 +97,14 @@ class ShiftedPixels {
 };
 
 }  // namespace
+
+RegionTemplate::RegionTemplate(const Image& image, const Eigen::Vector2d& middle_px,
+                               std::vector<Eigen::Vector2f> offsets_px, double scale)
+    : offsets_px_(std::move(offsets_px)) {
+  for (const Eigen::Vector2f& offset : offsets_px_)
+    values_.push_back(sample(image, middle_px.x() + scale * offset.x(), middle_px.y() + scale * offset.y()));
+  if (!normalize(values_)) values_.clear();
+}
 
 double RegionTemplate::ncc(const Image& image, const Eigen::Vector2d& middle_px, double scale) const {
   return correlation(values_, [&](std::size_t i) {

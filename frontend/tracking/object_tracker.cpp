@@ -22,7 +22,7 @@ constexpr double kReappearanceSpread_m = 1.0;  // standard deviation of the midd
                                                // again, about that of those seen last
 constexpr int kStopFrames = 3;                 // in a row below the stop speed, as the speed's noise may fall below it
 
-/// Where an object is: the box around its points, and somewhat beside it.
+/// Place of an object: the box around its points, with some room beside it.
 class Place {
  public:
   explicit Place(const TrackedObject& object)

@@ -22,9 +22,9 @@ bool mayBeOnFoot(const TrackedObject& object);
 /// True when a speed is that of a walk, at a depth at which patches are followed.
 bool isWalk(double speed_mps, double z_m, const StereoCamera& camera);
 
-/// True when an object may be a person who walks, who is followed by patches on the trunk: corners are few on clothes,
-/// and most of them are on limbs. It must be so near that the disparity tells a patch on the body from what lies half a
-/// meter behind. It must move: what stands cannot be told from what it stands before.
+/// True when an object may be a walking person. Such an object is followed by patches on the trunk: corners are few on
+/// clothes, and most of them are on limbs. It must be so near that the disparity tells a patch on the body from what
+/// lies half a meter behind. It must move: what stands cannot be told from what it stands before.
 bool mayBeWalking(const TrackedObject& object, const StereoCamera& camera);
 
 /// Kinematics of a walk for what may be a person on foot, else those of a vehicle. People walk steadily. They may go to

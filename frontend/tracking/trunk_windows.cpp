@@ -15,7 +15,7 @@ constexpr double kHip_m = 0.7, kHead_m = 1.8;  // heights over the road between 
 constexpr double kHalfWidth_m = 0.3;
 constexpr double kKnee_m = 0.5;  // height over the road above which points tell of a trunk
 
-/// Where a window was looked for: other points there, at any height, have the same one.
+/// Column of the image in which a window was looked for. Other points there, at any height, have the same one.
 struct Column {
   double u_px, disparity_px, reach_m, reach_px;
 };

@@ -92,10 +92,10 @@ class LabelledStreet {
         labels->mutableRow(v)[u] = kLabel;
     return scene(kNow, std::move(labels), points_px);
   }
-  /// The newest frame without labels. The points were followed, and not where they would be at rest; the board stands
-  /// on the road.
-  std::shared_ptr<SceneMotion> withoutLabels(const std::vector<Eigen::Vector3d>& points_px) const {
-    auto newest = scene(kNow, nullptr, points_px);
+  /// The newest frame, or one after it, without labels. The points were followed, and not where they would be at rest;
+  /// the board stands on the road.
+  std::shared_ptr<SceneMotion> withoutLabels(const std::vector<Eigen::Vector3d>& points_px, int frame = kNow) const {
+    auto newest = scene(frame, nullptr, points_px);
     for (ScenePoint& point : newest->points) point.age = 2;
     newest->ground.height_m = middle_m(kNow).y() + board_.height_m / 2;
     return newest;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "frontend/tracking/object_tracker.hpp"
+#include "tests/frontend/tracking/labelled_street.hpp"
 #include "tests/frontend/tracking/textured_board.hpp"
 
 namespace motorcade {
@@ -139,6 +140,18 @@ TEST(ObjectTracker, APersonGoesToASideOfTheDirectionFirstTold) {
   for (const ObjectObservation& o : sidewalk.reported().begin()->second) {
     if (o.frame.value < 3) continue;
     EXPECT_LT(std::abs(o.velocity_cam_mps.z()), kLeft_mps) << o.frame.value;
+  }
+}
+
+TEST(ObjectTracker, SomebodyOnWhomNoPointIsFollowedForLongIsFoundAsAWhole) {
+  for (const double walk_mps : {0.0, 1.4}) {
+    const test::LabelledStreet street({.walk_mps = walk_mps});
+    ObjectTracker track({}, test::kNarrowRig);
+    for (const LookBack::PastScene& past : street.past.past()) track(past.scene);
+    track(street.withoutLabels({street.onBoard_px(0.1, -0.2)}));
+    const auto found = track(street.withoutLabels({}, test::LabelledStreet::kNow + 1));
+    ASSERT_EQ(found->objects.empty(), walk_mps == 0) << walk_mps;
+    for (const ObjectObservation& seen : found->objects) EXPECT_NEAR(seen.velocity_cam_mps.x(), walk_mps, 0.2);
   }
 }
 
